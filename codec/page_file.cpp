@@ -92,6 +92,12 @@ Status PageFileWriter::add(const OrientedBoundary& boundary, const Acceptance& a
   return status;
 }
 
+void PageFileWriter::add_page(ByteView page, std::uint64_t solids) {
+  Entry& entry = index_.emplace_back(Entry{page.size(), {}});
+  for (std::uint64_t i = 0; i < solids; ++i) entry.numbers.push_back(count_++);
+  written_.insert(written_.end(), page.begin(), page.end());
+}
+
 Bytes PageFileWriter::take() { return std::exchange(written_, {}); }
 
 Result<Bytes> PageFileWriter::finish() && {

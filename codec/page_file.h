@@ -32,6 +32,8 @@ class PageFileWriter {
   /// Adds a solid that its container makes again from this one, with the acceptance of that solid.
   /// For containers of blocks. Errors: not_encodable.
   Status add(const OrientedBoundary& boundary, const Acceptance& acceptance);
+  /// Adds a page as it is, with all its solids in their order. Requires a page of `solids` solids.
+  void add_page(ByteView page, std::uint64_t solids);
   /// Returns the bytes written since the last call; the caller appends them to the file.
   Bytes take();
   /// Returns the last bytes: the pages that are still open, and the index. Errors: not_encodable.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -109,6 +110,7 @@ Result<DictionaryPointer> best_dictionary(std::span<const std::string> samples,
   for (const std::string& sample : samples) bytes += static_cast<double>(sample.size());
   bytes *= static_cast<double>(expected) / static_cast<double>(samples.size());
   double least = *now * bytes * kWorthwhile;
+  double last = std::numeric_limits<double>::infinity();
   DictionaryPointer best = current;
   for (const std::size_t number : kNumbers) {
     if (number > samples.size() / 2) break;
@@ -118,7 +120,9 @@ Result<DictionaryPointer> best_dictionary(std::span<const std::string> samples,
     const auto share = packed_share(trials, trial->get());
     if (!share) return share.error();
     const double total = *share * bytes + static_cast<double>((*trial)->content().size());
-    if (total >= least) break;
+    if (total >= last) break;  // more examples win nothing any more
+    last = total;
+    if (total >= least) continue;
     least = total;
     auto made = TextDictionary::of(content_of(examples, *share));
     if (!made) return made;

@@ -57,6 +57,9 @@ Result<std::string> unpack(ByteView packed, const TextDictionary* dictionary,
 /// The least number of samples from which a dictionary is made.
 constexpr std::size_t kFewestSamples = 32;
 
+/// More samples than these make no better dictionary: twice the most examples.
+constexpr std::size_t kEnoughSamples = 320;
+
 /// Whether a dictionary is there that packs the samples about as well as those for which it was
 /// made. Cost: 24 of the samples are packed.
 Result<bool> still_fits(const TextDictionary* dictionary, std::span<const std::string> samples);

@@ -190,6 +190,15 @@ struct EncodedDocument {
 Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Document& document,
                                       const FeatureEncoding& options);
 
+/// The proven solids of a feature, in order, from its blobs and its page. Errors: those of
+/// decode(); malformed.
+Result<std::vector<Decoded>> decode_solids(const store::FeatureRecord& feature,
+                                           const Limits& limits = {});
+/// The blob of a solid of a feature, which is encoded again if it is in the page. Requires a proven
+/// solid. Errors: those of decode_solids() and encode().
+Result<Bytes> blob_of(const store::FeatureRecord& feature, std::size_t solid,
+                      const Limits& limits = {});
+
 /// The document (with one feature) that encode_feature() was given. Errors: malformed when
 /// encode_feature() did not make the feature; those of decode().
 Result<Document> decode_feature(const EncodedFeature& feature, const Limits& limits = {});
@@ -205,8 +214,8 @@ std::map<std::string, std::uint64_t> other_geometries(const EncodedFeature& feat
 /// The text of a feature as the store keeps it: the skeleton, and what of measures, reports and
 /// findings does not follow from the solids. Cost: that of decoding the solids.
 std::string stored_text(const EncodedFeature& feature);
-/// The feature as the store keeps it, its text packed with a dictionary (null: none). Errors: those
-/// of packing::pack().
+/// The feature as the store keeps it, its text packed with a dictionary (null: none), and its
+/// solids in a page where that is smaller. Errors: those of packing::pack() and decode().
 Result<StoredFeature> pack(EncodedFeature feature, const packing::DictionaryPointer& dictionary);
 /// The same when the text, which is stored_text(feature), was made before.
 Result<StoredFeature> pack(const std::string& text, EncodedFeature feature,
@@ -214,7 +223,8 @@ Result<StoredFeature> pack(const std::string& text, EncodedFeature feature,
 
 /// The solids whose measures and reports unpack() makes, at the cost of decoding them.
 enum class Reports : std::uint8_t { none, of_unproven, all };
-/// The feature that pack() was given. Errors: those of packing::unpack(); malformed.
+/// The feature that pack() was given, with its page if it has one. Errors: those of
+/// packing::unpack(); malformed.
 Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits = {},
                               Reports reports = Reports::all);
 /// The document of a stored feature: unpack(), then decode_feature().

@@ -14,6 +14,7 @@
 #include "base/bytes.h"
 #include "base/result.h"
 #include "codec/blob.h"
+#include "codec/page.h"
 #include "formats/ewkb.h"
 #include "sql/info_json.h"
 #include "validate/certify.h"
@@ -271,6 +272,20 @@ void decode_into(const wt_job& job, wt_reply* reply) {
   answer(reply, formats::write_ewkb(decoded->solid));
 }
 
+void blob_into(const wt_job& job, wt_reply* reply) {
+  const CallLimits call(job);
+  const auto solids = codec::decode_page(bytes_of(job), call.of_input());
+  if (!solids) return fail(reply, call.of_reading(solids.error()));
+  if (job.slot < 0 || static_cast<std::size_t>(job.slot) >= solids->size()) {
+    return fail(reply, "22023", "the page has no solid of this number",
+                "It has " + std::to_string(solids->size()) + ", counted from 0.");
+  }
+  const Result<Bytes> blob = codec::blob_of((*solids)[static_cast<std::size_t>(job.slot)]);
+  if (!blob) return fail(reply, blob.error());
+  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
+  answer(reply, *blob);
+}
+
 void info_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
   const Result<codec::BlobInfo> info = codec::describe(bytes_of(job), call.of_input());
@@ -332,6 +347,10 @@ void wt_bridge_encode(const wt_job* job, wt_reply* reply) noexcept {
 
 void wt_bridge_decode(const wt_job* job, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::decode_into(*job, reply); });
+}
+
+void wt_bridge_blob(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::blob_into(*job, reply); });
 }
 
 void wt_bridge_info(const wt_job* job, wt_reply* reply) noexcept {

@@ -66,7 +66,7 @@ wt_rule_choice wt_default_rules(void) WATERTIGHT_NOEXCEPT;
 /** The number of the rule set that this program applies; blobs state it. */
 uint32_t wt_rule_set(void) WATERTIGHT_NOEXCEPT;
 
-/** A blob or EWKB to work on, the helpers to do it with, and when to stop. */
+/** A blob, page or EWKB to work on, the helpers to do it with, and when to stop. */
 typedef struct wt_job {
   const uint8_t* bytes;
   size_t size;
@@ -80,6 +80,7 @@ typedef struct wt_job {
    *  or vertex, need more. */
   uint32_t max_memory;
   const wt_rule_choice* rules; /* NULL: the default ones */
+  int32_t slot;                /* the number of a solid of a page, from 0 */
 } wt_job;
 
 /* Each function below fills a reply that is all zero. An undecided solid is a failure (57014, can
@@ -94,6 +95,10 @@ void wt_bridge_is_valid(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 void wt_bridge_encode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with EWKB. */
 void wt_bridge_decode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a page with the blob of its solid number `slot`. Without such a solid it fails with
+ * 22023.
+ */
+void wt_bridge_blob(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with its header, counts and part sizes as JSON. */
 void wt_bridge_info(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with the rules under which its solid was accepted, as JSON. A blob does not say

@@ -130,10 +130,11 @@ raise_failure(const wt_failure *failure)
 
 typedef void (*bridge_function) (const wt_job *job, wt_reply *reply);
 
-/* Runs one bridge function on a bytea argument by some rules (NULL: the default ones). Returns its
- * reply, or raises. */
+/* Runs one bridge function on a bytea argument by some rules (NULL: the default ones), or for a
+ * solid of a page. Returns its reply, or raises. */
 static wt_reply *
-run(bridge_function function, Datum argument, const wt_rule_choice *rules, bool needs_engine)
+run_on(bridge_function function, Datum argument, const wt_rule_choice *rules, bool needs_engine,
+	   int32 slot)
 {
 	wt_reply   *reply = new_reply();
 	bytea	   *input = DatumGetByteaPP(argument);
@@ -146,11 +147,18 @@ run(bridge_function function, Datum argument, const wt_rule_choice *rules, bool 
 	job.max_seconds = (uint32_t) max_seconds_setting;
 	job.max_memory = (uint32_t) max_memory_setting;
 	job.rules = rules;
+	job.slot = slot;
 	function(&job, reply);
 	CHECK_FOR_INTERRUPTS();
 	if (reply->failure.sqlstate[0] != '\0')
 		raise_failure(&reply->failure);
 	return reply;
+}
+
+static wt_reply *
+run(bridge_function function, Datum argument, const wt_rule_choice *rules, bool needs_engine)
+{
+	return run_on(function, argument, rules, needs_engine, 0);
 }
 
 /* The number of a rule within its range, or an error. */
@@ -319,6 +327,14 @@ Datum
 wt_decode(PG_FUNCTION_ARGS)
 {
 	PG_RETURN_DATUM(bytea_of(run(wt_bridge_decode, PG_GETARG_DATUM(0), NULL, false)));
+}
+
+PG_FUNCTION_INFO_V1(wt_blob);
+Datum
+wt_blob(PG_FUNCTION_ARGS)
+{
+	PG_RETURN_DATUM(
+		bytea_of(run_on(wt_bridge_blob, PG_GETARG_DATUM(0), NULL, false, PG_GETARG_INT32(1))));
 }
 
 PG_FUNCTION_INFO_V1(wt_info);

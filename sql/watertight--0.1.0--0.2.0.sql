@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: GPL-3.0-or-later
--- Rules per call and as settings. A function that takes rules depends on its arguments alone, so it is
+-- Rules per call and as settings, and solids of pages. A function that takes rules depends on its arguments alone, so it is
 -- IMMUTABLE; wt_rules() reads the settings, so it is STABLE, and no index or generated column can depend
 -- on them. Nothing of 0.1.0 changes: a call without rules has the default ones in every session.
 \echo Use "ALTER EXTENSION watertight UPDATE" to load this file. \quit
@@ -29,3 +29,8 @@ CREATE FUNCTION wt_encode(ewkb bytea, rules jsonb) RETURNS bytea
   AS 'MODULE_PATHNAME', 'wt_encode' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
 COMMENT ON FUNCTION wt_encode(bytea, jsonb) IS
   'the blob of a solid (EWKB) that is valid by these rules, which the blob states; an invalid one is an error with its findings as detail';
+
+CREATE FUNCTION wt_blob(page bytea, slot integer) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_blob' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 5000;
+COMMENT ON FUNCTION wt_blob(bytea, integer) IS
+  'the blob of a solid of a page, counted from 0, as the view watertight.solid has them';

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "store/migrations.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "store/rows/attribute_schema.h"
+#include "store/rows/page_schema.h"
 
 namespace watertight::store {
 namespace {
@@ -458,9 +461,14 @@ constexpr Migration kMigrations[] = {
 };
 // The step after those of kMigrations: all rows are in the new tables (moved_rows.h).
 constexpr std::int64_t kMoved = std::size(kMigrations) + 1;
-// The step after that: chosen attributes.
-constexpr std::int64_t kAttributes = kMoved + 1;
-constexpr std::int64_t kNewest = kAttributes;
+// The steps after that.
+struct LaterMigration {
+  const char* name;
+  std::span<const char* const> statements;
+};
+constexpr LaterMigration kLaterMigrations[] = {{"chosen attributes", kAttributeSchema},
+                                               {"pages of solids", kPageSchema}};
+constexpr std::int64_t kNewest = kMoved + std::size(kLaterMigrations);
 
 // The number of the lock is "watertig" in ASCII; any number will do that no other program locks.
 // The session has it until the last step is done.
@@ -485,8 +493,8 @@ Error newer(std::int64_t found) {
                                       ": use the program that made it, or a newer one"};
 }
 
-Status run_all(DatabaseSession& connection, const Migration& migration) {
-  for (const char* statement : migration.statements) {
+Status run_all(DatabaseSession& connection, std::span<const char* const> statements) {
+  for (const char* statement : statements) {
     if (statement == nullptr) break;
     if (const Result<Rows> done = connection.run(statement); !done) return done.error();
   }
@@ -514,19 +522,21 @@ Status change_schema(DatabaseSession& connection) {
   if (*found > kNewest) return newer(*found);
   for (std::int64_t number = *found + 1; number < kMoved; ++number) {
     const Migration& migration = kMigrations[number - 1];
-    if (const Status done = run_all(connection, migration); !done) return done;
+    if (const Status done = run_all(connection, migration.statements); !done) return done;
     if (const Status done = record(connection, number, migration.name); !done) return done;
   }
   if (const Result<Rows> done = connection.run("COMMIT"); !done) return done.error();
   return Done{};
 }
 
-Status add_attributes(DatabaseSession& connection) {
+/// Applies the steps of kLaterMigrations after `found` in one transaction.
+Status change_moved(DatabaseSession& connection, std::int64_t found) {
   if (const Result<Rows> begun = connection.run("BEGIN"); !begun) return begun.error();
-  for (const char* statement : kAttributeSchema) {
-    if (const Result<Rows> done = connection.run(statement); !done) return done.error();
+  for (std::int64_t number = std::max(found, kMoved) + 1; number <= kNewest; ++number) {
+    const LaterMigration& migration = kLaterMigrations[number - kMoved - 1];
+    if (Status done = run_all(connection, migration.statements); !done) return done;
+    if (Status done = record(connection, number, migration.name); !done) return done;
   }
-  if (Status done = record(connection, kAttributes, "chosen attributes"); !done) return done;
   if (const Result<Rows> done = connection.run("COMMIT"); !done) return done.error();
   return Done{};
 }
@@ -542,7 +552,7 @@ Status migrate_locked(DatabaseSession& connection, const Tell& tell) {
     if (!moved) return moved;
   }
   if (*found == kNewest) return Done{};  // another instance was first
-  return add_attributes(connection);
+  return change_moved(connection, *found);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The store of valid solids (docs/architecture.md, "What is stored"): collections of features, each
-// a document skeleton with the blobs of its solids. The store knows blobs as bytes only.
+// a document skeleton with the blobs of its solids. The store knows blobs and pages as bytes only.
 // Implementations are thread-safe.
 #pragma once
 
@@ -47,7 +47,7 @@ struct StoredCollection {
   std::string header;  // header (formats/document.h) of the collection's first document
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
-  std::uint64_t blob_bytes = 0;
+  std::uint64_t blob_bytes = 0;         // of blobs and pages
   std::uint64_t unproven = 0;           // the solids that are not proven
   std::uint64_t unproven_features = 0;  // the features that are not proven (is_proven())
   Policy policy = Policy::refuse;
@@ -64,7 +64,7 @@ struct StoredSolid {
   std::uint32_t geometry = 0;
   std::uint32_t ordinal = 0;
   std::string lod;
-  Bytes blob;             // empty unless the solid is proven
+  Bytes blob;             // empty unless the solid is proven, and for one in FeatureRecord::page
   bool is_proven = true;  // false: the skeleton of the feature has the solid as it came
   std::string measures;   // JSON; "" in a StoredFeature, whose text has it
   std::string report;     // JSON; the same
@@ -80,6 +80,9 @@ struct FeatureRecord {
   SharedText header;       // header of the feature's document (may differ from the collection's)
   std::optional<StoredBox> box;  // world coordinates of the box around its solids
   std::vector<StoredSolid> solids;
+  /// The proven solids without a blob, in their order, as a page (codec/page.h). "": there are
+  /// none.
+  Bytes page;
   /// JSON array of the groups of solids in which a defect was found; "" when there is none, and in
   /// a StoredFeature, whose text has it.
   std::string findings;
@@ -139,7 +142,7 @@ struct FeatureSummary {
   std::string type;
   std::uint64_t version = 0;
   std::uint64_t solids = 0;
-  std::uint64_t blob_bytes = 0;
+  std::uint64_t blob_bytes = 0;  // of blobs and page
   std::optional<StoredBox> box;
   std::uint64_t unproven = 0;  // the solids that are not proven
   bool is_proven = true;

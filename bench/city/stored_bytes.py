@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Counts the bytes that features take in PostgreSQL, and times the read of one feature.
 
-    stored_bytes.py WATERTIGHT FILE... [--copies N] [--before OLD_WATERTIGHT]
+    stored_bytes.py WATERTIGHT FILE... [--copies N] [--invalid skip] [--before OLD_WATERTIGHT]
 
-Each document is stored alone (invalid=keep) in a private database, after which VACUUM is run. Prints
+Each document is stored alone (invalid=keep, or only what is valid) in a private database, after which
+VACUUM is run. Prints
 the bytes of each table (with TOAST) and index, those of an empty schema, and the difference of the
-sums by feature. --copies N repeats the rows N times under other ids and 1 km apart first (tables of
-schema 10 only). --before: the same with an older program, and the times of reads of one feature
+sums by feature. --copies N repeats the rows N times under other ids and place numbers and 1 km apart
+first (tables of schema 10 and later). --before: the same with an older program, and the times of reads of one feature
 (f=cityjsonseq, no cache) by both programs in turn, as a ratio.
 """
 import argparse
@@ -28,10 +29,9 @@ SIZES = """SELECT relname || ' ' || CASE relkind WHEN 'i' THEN pg_relation_size(
   WHERE nspname = 'watertight' AND relkind IN ('r', 'i') ORDER BY relname"""
 COPY = """INSERT INTO watertight.feature_row (place, min_x, min_y, min_z, max_x, max_y, max_z, collection, kind,
     dictionary, solids, blob_bytes, unproven, is_proven, id, packed_solids, packed_text)
-  SELECT place, min_x + n * 1000, min_y, min_z, max_x + n * 1000, max_y, max_z, collection, kind, dictionary,
-    solids, blob_bytes, unproven, is_proven, overlay(id placing lpad(n::text, 6, '0') from length(id) - 5),
-    packed_solids, packed_text
-  FROM watertight.feature_row, generate_series(1, {}) n ON CONFLICT DO NOTHING"""
+  SELECT place - n, min_x + n * 1000, min_y, min_z, max_x + n * 1000, max_y, max_z, collection, kind, dictionary,
+    solids, blob_bytes, unproven, is_proven, left(id, -12) || left(md5(id || n), 12), packed_solids, packed_text
+  FROM watertight.feature_row, generate_series(1, {}) n ORDER BY n ON CONFLICT DO NOTHING"""
 TYPES = {".jsonl": "application/city+json-seq", ".json": "application/city+json"}
 
 
@@ -47,9 +47,9 @@ def sizes(service):
     return {name: int(size) for name, size in (line.split() for line in psql(service, SIZES).split("\n"))}
 
 
-def store(service, path, copies):
+def store(service, path, copies, invalid):
     empty = sizes(service)
-    status, body = service.request("POST", "/collections/c/items?invalid=keep", path.read_bytes(), 600,
+    status, body = service.request("POST", f"/collections/c/items?invalid={invalid}", path.read_bytes(), 600,
                                    {"Content-Type": TYPES[path.suffix]})
     if status != 201:
         raise SystemExit(f"{path.name}: {status} {body[:300]!r}")
@@ -94,16 +94,17 @@ def main():
     parser.add_argument("program")
     parser.add_argument("files", nargs="+", type=pathlib.Path)
     parser.add_argument("--copies", type=int, default=0)
+    parser.add_argument("--invalid", choices=["keep", "skip"], default="keep")
     parser.add_argument("--before")
     arguments = parser.parse_args()
     for path in arguments.files:
         with temporary_folder("bytes") as folder, Service(arguments.program, folder) as service:
-            show(path, *store(service, path, arguments.copies))
+            show(path, *store(service, path, arguments.copies, arguments.invalid))
             if not arguments.before:
                 continue
             with temporary_folder("before") as other, Service(arguments.before, other) as old:
                 print("\nbefore:")
-                show(path, *store(old, path, 0))
+                show(path, *store(old, path, 0, arguments.invalid))
                 ids, ratios = ids_of(old), []
                 for _ in range(7):
                     before, after = read_in_turn([old, service], ids)

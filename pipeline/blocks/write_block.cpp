@@ -20,9 +20,10 @@ void write_part(ByteWriter& writer, ByteView part) {
 
 /// A solid that is proven, on its way into the pages.
 struct PagedSolid {
-  const Bytes* blob = nullptr;
-  std::size_t number = 0;   // its number in the block
-  std::size_t feature = 0;  // the number of its feature
+  Decoded decoded;
+  std::size_t number = 0;      // its number in the block
+  std::size_t feature = 0;     // the number of its feature
+  std::size_t blob_bytes = 0;  // 0: it is in the page of its feature
 };
 
 /// A page file, and how the block has each of its solids.
@@ -32,15 +33,36 @@ struct Paged {
   std::size_t bytes = 0;             // of the file, and of the blobs that are not in it
 };
 
-/// The blobs as they are.
-Paged without_pages(const BlockContents& contents) {
+Status take_pages(codec::PageFileWriter writer, Paged& paged) {
+  auto file = std::move(writer).finish();
+  if (!file) return std::move(file).error();
+  paged.file = *std::move(file);
+  paged.bytes += paged.file.size();
+  return Done{};
+}
+
+/// The blobs and the pages of features as they are.
+Result<Paged> as_they_are(const BlockContents& contents) {
   Paged paged;
+  codec::PageFileWriter writer;
+  bool has_pages = false;
   for (const BlockFeature& feature : contents.features) {
+    std::uint64_t in_page = 0;
     for (const StoredSolid& solid : feature.encoded.solids) {
-      paged.forms.push_back(solid.blob.empty() ? kNoBlob : solid.blob.size());
+      const bool is_in_page = solid.is_proven && solid.blob.empty();
+      in_page += is_in_page ? 1 : 0;
+      paged.forms.push_back(is_in_page ? kInPages : solid.is_proven ? solid.blob.size() : kNoBlob);
       paged.bytes += solid.blob.size();
     }
+    if (in_page == 0) continue;
+    if (feature.encoded.page.empty()) {
+      return Error{ErrorCode::malformed, "a proven solid without a blob"};
+    }
+    writer.add_page(feature.encoded.page, in_page);
+    has_pages = true;
   }
+  if (!has_pages) return paged;
+  if (Status taken = take_pages(std::move(writer), paged); !taken) return taken.error();
   return paged;
 }
 
@@ -50,32 +72,39 @@ Result<std::vector<PagedSolid>> solids_for_pages(const BlockContents& contents) 
   std::vector<PagedSolid> solids;
   std::size_t number = 0;
   for (std::size_t i = 0; i < contents.features.size(); ++i) {
+    auto decoded = decode_solids(contents.features[i].encoded);
+    if (!decoded) return std::move(decoded).error();
+    auto next = decoded->begin();
     for (const StoredSolid& solid : contents.features[i].encoded.solids) {
       const std::size_t own = number++;
-      if (solid.blob.empty()) continue;
-      const auto info = codec::describe(solid.blob);
-      if (!info) return info.error();
-      if (info->steiner_vertices == 0) solids.push_back({&solid.blob, own, i});
+      if (!solid.is_proven) continue;
+      Decoded& one = *next++;
+      if (one.info.steiner_vertices > 0) continue;
+      solids.push_back({std::move(one), own, i, solid.blob.size()});
     }
   }
   return solids;
 }
 
-Status take_pages(codec::PageFileWriter writer, Paged& paged) {
-  auto file = std::move(writer).finish();
-  if (!file) return std::move(file).error();
-  paged.file = *std::move(file);
-  paged.bytes += paged.file.size();
-  return Done{};
+/// The form of the solids that go into no pages.
+Paged without_pages(const std::vector<PagedSolid>& solids, const Paged& as_is) {
+  Paged paged{{}, as_is.forms, as_is.bytes - as_is.file.size()};
+  for (const PagedSolid& solid : solids) paged.bytes -= solid.blob_bytes;
+  return paged;
+}
+
+Status add(const PagedSolid& solid, const Solid& placed, codec::PageFileWriter& writer) {
+  const auto boundary = OrientedBoundary::make(placed);
+  if (!boundary) return boundary.error();
+  return writer.add(*boundary, solid.decoded.info.acceptance);
 }
 
 Result<Paged> on_own_grids(const std::vector<PagedSolid>& solids, Paged paged,
                            const EncodeOptions& options) {
   codec::PageFileWriter writer(codec::kMaxPageSolids, options);
   for (const PagedSolid& solid : solids) {
-    if (Status added = writer.add_blob(*solid.blob); !added) return added.error();
+    if (Status added = add(solid, solid.decoded.solid, writer); !added) return added.error();
     paged.forms[solid.number] = kInPages;
-    paged.bytes -= solid.blob->size();
   }
   if (Status taken = take_pages(std::move(writer), paged); !taken) return taken.error();
   return paged;
@@ -101,14 +130,8 @@ std::vector<Solid> moved_exactly(const BlockGrid& grid, std::span<const Solid* c
 /// All solids that can be on one grid in pages on that grid, the others on their own.
 Result<Paged> on_block_grid(const std::vector<PagedSolid>& solids, Paged paged,
                             const EncodeOptions& options) {
-  std::vector<Decoded> decoded;
   std::vector<const Solid*> views;
-  for (const PagedSolid& solid : solids) {
-    auto one = decode(*solid.blob);
-    if (!one) return std::move(one).error();
-    decoded.push_back(*std::move(one));
-  }
-  for (const Decoded& one : decoded) views.push_back(&one.solid);
+  for (const PagedSolid& solid : solids) views.push_back(&solid.decoded.solid);
   const auto grid = BlockGrid::of(views);
   if (!grid) return Error{ErrorCode::not_encodable, "the solids have no grid in common"};
   codec::PageFileWriter writer(codec::kMaxPageSolids, options);
@@ -117,12 +140,9 @@ Result<Paged> on_block_grid(const std::vector<PagedSolid>& solids, Paged paged,
     const auto moved = moved_exactly(*grid, std::span(views).subspan(begin, end - begin));
     for (std::size_t i = begin; i < end; ++i) {
       const bool is_moved = !moved.empty();
-      const auto boundary = OrientedBoundary::make(is_moved ? moved[i - begin] : decoded[i].solid);
-      if (!boundary) return boundary.error();
-      if (Status added = writer.add(*boundary, decoded[i].info.acceptance); !added)
-        return added.error();
+      const Solid& placed = is_moved ? moved[i - begin] : solids[i].decoded.solid;
+      if (Status added = add(solids[i], placed, writer); !added) return added.error();
       paged.forms[solids[i].number] = is_moved ? kOnBlockGrid : kInPages;
-      paged.bytes -= solids[i].blob->size();
     }
   }
   if (Status taken = take_pages(std::move(writer), paged); !taken) return taken.error();
@@ -138,19 +158,20 @@ Status take_smaller(Result<Paged> pages, Paged& best) {
 }
 
 Result<Paged> smallest_pages(const BlockContents& contents, const EncodeOptions& options) {
-  const Paged blobs = without_pages(contents);
+  auto best = as_they_are(contents);
+  if (!best) return best;
   const auto solids = solids_for_pages(contents);
   if (!solids) return solids.error();
-  auto pages = on_own_grids(*solids, blobs, options);
+  const Paged others = without_pages(*solids, *best);
+  auto pages = on_own_grids(*solids, others, options);
   const auto reader = pages ? codec::PageFileReader::open(pages->file)
                             : Result<codec::PageFileReader>(pages.error());
   const bool have_one_grid =
       reader &&
       reader->page_count() <= (solids->size() + codec::kMaxPageSolids - 1) / codec::kMaxPageSolids;
-  Paged best = blobs;
-  if (Status taken = take_smaller(std::move(pages), best); !taken) return std::move(taken).error();
+  if (Status taken = take_smaller(std::move(pages), *best); !taken) return std::move(taken).error();
   if (have_one_grid) return best;
-  if (Status taken = take_smaller(on_block_grid(*solids, blobs, options), best); !taken) {
+  if (Status taken = take_smaller(on_block_grid(*solids, others, options), *best); !taken) {
     return std::move(taken).error();
   }
   return best;
@@ -162,7 +183,7 @@ Result<Bytes> write_block(const BlockContents& contents,
                           std::span<const BlockDocument> /*documents*/, const EncodeOptions& pages,
                           SolidLayout layout) {
   const auto paged =
-      layout == SolidLayout::blobs ? without_pages(contents) : smallest_pages(contents, pages);
+      layout == SolidLayout::blobs ? as_they_are(contents) : smallest_pages(contents, pages);
   if (!paged) return paged.error();
   ByteWriter block;
   write_part(block, pack_block_texts(contents, paged->forms));

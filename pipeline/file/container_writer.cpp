@@ -18,7 +18,7 @@ constexpr std::size_t kRangeBytes = 20U << 10U;
 constexpr std::uint8_t kMissingBits = 2;
 
 std::size_t bytes_of(const EncodedFeature& feature) {
-  std::size_t bytes = feature.id.size() + feature.skeleton.size();
+  std::size_t bytes = feature.id.size() + feature.skeleton.size() + feature.page.size();
   for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size() + solid.report.size();
   return bytes;
 }
@@ -35,17 +35,12 @@ void include(std::optional<FlatBox>& all, const std::optional<store::StoredBox>&
   all->include(flat(*box));
 }
 
-/// The box of a feature, from its blobs if it does not state one.
+/// The box of a feature, from its solids if it does not state one.
 Result<std::optional<store::StoredBox>> known_box(const EncodedFeature& feature) {
   if (feature.box) return feature.box;
-  std::vector<Decoded> solids;
-  for (const StoredSolid& solid : feature.solids) {
-    if (!solid.is_proven) continue;
-    auto decoded = decode(solid.blob);
-    if (!decoded) return std::move(decoded).error();
-    solids.push_back(*std::move(decoded));
-  }
-  return box_of(feature, solids);
+  const auto solids = decode_solids(feature);
+  if (!solids) return solids.error();
+  return box_of(feature, *solids);
 }
 
 }  // namespace

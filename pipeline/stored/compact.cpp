@@ -6,11 +6,12 @@
 
 #include "packing/text_dictionary.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/stored/samples.h"
+#include "pipeline/stored/solid_page.h"
 
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::uint64_t kSamples = 1000;
 constexpr std::uint64_t kBatch = 200;
 
 bool is_same(const packing::DictionaryPointer& a, const packing::DictionaryPointer& b) {
@@ -23,11 +24,11 @@ Result<packing::DictionaryPointer> dictionary_for(SolidStore& store, const std::
                                                   std::uint64_t features) {
   auto newest = store.dictionary(collection);
   if (!newest) return newest;
-  const auto samples = store.walk(collection, kSamples, "");
+  const auto samples = sample_features(store, collection, packing::kEnoughSamples);
   if (!samples) return samples.error();
   std::vector<std::string> texts;
   bool is_outdated = false;
-  for (const StoredFeature& feature : samples->features) {
+  for (const StoredFeature& feature : *samples) {
     const auto stored = packing::unpack(feature.skeleton.bytes, feature.skeleton.dictionary.get(),
                                         packing::kMostExampleBytes);
     if (!stored && stored.error().code == ErrorCode::limit_exceeded) continue;  // no example
@@ -63,6 +64,9 @@ Result<CompactCounts> compact(SolidStore& store, const std::string& collection,
       counts.bytes_before += bytes;
       if (is_same(feature.skeleton.dictionary, *dictionary)) {
         counts.bytes_after += bytes;
+        if (!may_share_page(feature)) continue;
+        if (Status put = put_in_page(feature); !put) return std::move(put).error();
+        if (!feature.page.empty()) repacked.push_back(std::move(feature));
         continue;
       }
       auto encoded = unpack(std::move(feature));

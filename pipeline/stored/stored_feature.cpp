@@ -17,6 +17,7 @@
 #include "pipeline/stored/feature_facts.h"
 #include "pipeline/stored/merged_vertices.h"
 #include "pipeline/stored/solid_lines.h"
+#include "pipeline/stored/solid_page.h"
 #include "pipeline/stored/stored_reports.h"
 #include "pipeline/stored/unproven_solid.h"
 #include "validate/report_json.h"
@@ -145,13 +146,10 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
 }
 
 Result<Document> decode_feature(const EncodedFeature& feature, const Limits& limits) {
+  auto decoded = decode_solids(feature, limits);
+  if (!decoded) return std::move(decoded).error();
   std::vector<Solid> solids;
-  for (const StoredSolid& solid : feature.solids) {
-    if (!solid.is_proven) continue;
-    auto decoded = decode(solid.blob, limits);
-    if (!decoded) return std::move(decoded).error();
-    solids.push_back(std::move(decoded->solid));
-  }
+  for (Decoded& one : *decoded) solids.push_back(std::move(one.solid));
   return decode_feature(feature, std::move(solids), limits);
 }
 
@@ -290,6 +288,7 @@ Result<StoredFeature> pack(const std::string& text, EncodedFeature feature,
                            const packing::DictionaryPointer& dictionary) {
   auto packed = packing::pack(text, dictionary.get());
   if (!packed) return std::move(packed).error();
+  if (Status put = put_in_page(feature); !put) return std::move(put).error();
   feature.has_findings = !feature.findings.empty();
   feature.findings.clear();
   for (StoredSolid& solid : feature.solids) {

@@ -59,17 +59,22 @@ ReportTexts expected_texts(const Solid& solid, const Acceptance& acceptance, boo
 }
 
 /// The expected texts of the chosen solids; empty ones for the others, and for solids that cannot
-/// be decoded.
+/// be decoded (of proven ones: all, when one cannot).
 std::vector<ReportTexts> expected_texts(const EncodedFeature& feature, Reports reports,
                                         const Limits& limits) {
   std::vector<ReportTexts> expected(feature.solids.size());
   std::string_view skeleton = feature.skeleton;
   const auto lines = take_solid_lines(skeleton, feature.solids.size());
+  std::vector<Decoded> proven;
+  if (reports == Reports::all) {
+    if (auto decoded = decode_solids(feature, limits)) proven = *std::move(decoded);
+  }
+  auto next = proven.begin();
   for (std::size_t i = 0; i < feature.solids.size() && reports != Reports::none; ++i) {
     const StoredSolid& solid = feature.solids[i];
-    if (solid.is_proven && reports == Reports::all) {
-      const auto decoded = decode(solid.blob, limits);
-      if (decoded) expected[i] = expected_texts(decoded->solid, decoded->info.acceptance, true);
+    if (solid.is_proven && next != proven.end()) {
+      expected[i] = expected_texts(next->solid, next->info.acceptance, true);
+      ++next;
     }
     if (!solid.is_proven && lines) {
       const auto read = read_unproven((*lines)[i].unproven, limits);

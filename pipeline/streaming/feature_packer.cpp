@@ -41,17 +41,17 @@ Status FeaturePacker::add(PreparedFeature feature, FeatureSpool& spool) {
 
 Status FeaturePacker::finish(FeatureSpool& spool) { return choose(waiting_.size(), spool); }
 
-/// The collection's dictionary, or a new one. A document of many features asks for one when there
-/// is none, when the newest no longer fits, and when the number of features passes a power of two;
-/// a document of few features when there is none and the number passes a power of two.
+/// The collection's dictionary, or a new one. A document asks for one when the number of features
+/// passes a power of two, with stored features as samples if it has few; one of many features also
+/// when there is none, and when the newest no longer fits.
 Result<packing::DictionaryPointer> FeaturePacker::dictionary_for(
     const std::vector<PreparedFeature>& features, std::uint64_t expected) const {
   std::vector<std::string> texts;
   for (const PreparedFeature& feature : features) texts.push_back(feature.text);
   const bool has_grown = std::bit_width(stored_) < std::bit_width(stored_ + texts.size()) &&
                          stored_ + texts.size() >= packing::kFewestSamples;
-  if (texts.size() < packing::kFewestSamples) {
-    if (!has_grown || dictionary_ != nullptr) return dictionary_;
+  if (texts.size() < packing::kFewestSamples && !has_grown) return dictionary_;
+  if (has_grown && stored_ > 0 && texts.size() < packing::kEnoughSamples) {
     auto samples = samples_();
     if (!samples) return std::move(samples).error();
     texts.insert(texts.end(), samples->begin(), samples->end());

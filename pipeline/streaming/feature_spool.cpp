@@ -17,7 +17,8 @@ constexpr std::size_t kFeatureOverhead = sizeof(StoredFeature);
 Error damaged() { return {ErrorCode::unavailable, "the temporary file has been changed"}; }
 
 std::size_t bytes_of(const StoredFeature& feature) {
-  std::size_t bytes = kFeatureOverhead + feature.id.size() + feature.skeleton.bytes.size();
+  std::size_t bytes =
+      kFeatureOverhead + feature.id.size() + feature.skeleton.bytes.size() + feature.page.size();
   for (const StoredSolid& solid : feature.solids) {
     bytes += kSolidOverhead + solid.object_id.size() + solid.blob.size();
   }
@@ -58,6 +59,7 @@ void write_feature(ByteWriter& writer, const StoredFeature& feature, std::uint64
   writer.u8(feature.has_findings ? 1 : 0);
   writer.varint(dictionary);
   write(writer, feature.skeleton.bytes);
+  write(writer, feature.page);
   writer.varint(feature.solids.size());
   for (const StoredSolid& solid : feature.solids) {
     write(writer, solid.object_id);
@@ -89,6 +91,7 @@ StoredFeature read_feature(ByteReader& reader, const std::vector<SharedText>& he
   const std::uint64_t dictionary = reader.varint();
   if (dictionary < dictionaries.size()) feature.skeleton.dictionary = dictionaries[dictionary];
   feature.skeleton.bytes = read_copy(reader);
+  feature.page = read_copy(reader);
   const std::uint64_t solids = reader.varint();
   for (std::uint64_t i = 0; i < solids && !reader.failed(); ++i) {
     StoredSolid& solid = feature.solids.emplace_back();

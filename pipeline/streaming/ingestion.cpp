@@ -8,20 +8,19 @@
 #include "formats/city_json/city_json.h"
 #include "packing/text_dictionary.h"
 #include "pipeline/instances.h"
+#include "pipeline/stored/samples.h"
 #include "pipeline/streaming/feature_stream.h"
 #include "pipeline/streaming/process.h"
 
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::uint64_t kSamples = 200;
-
 /// Texts of some features of a collection.
 Result<std::vector<std::string>> stored_texts(SolidStore& store, const std::string& collection) {
-  const auto samples = store.walk(collection, kSamples, "");
+  const auto samples = sample_features(store, collection, packing::kEnoughSamples);
   if (!samples) return samples.error();
   std::vector<std::string> texts;
-  for (const StoredFeature& feature : samples->features) {
+  for (const StoredFeature& feature : *samples) {
     auto text = packing::unpack(feature.skeleton.bytes, feature.skeleton.dictionary.get(),
                                 packing::kMostExampleBytes);
     if (!text && text.error().code == ErrorCode::limit_exceeded)

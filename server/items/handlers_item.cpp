@@ -65,7 +65,7 @@ struct ItemRequest {
   }
 };
 
-Result<Bytes> blob_of(const StoredFeature& feature, const std::string& text) {
+Result<Bytes> blob_of(const StoredFeature& feature, const std::string& text, const Limits& limits) {
   const std::string count = std::to_string(feature.solids.size());
   if (feature.solids.empty()) {
     return Error{ErrorCode::not_encodable, "this feature has no solids, so there is no blob of it"};
@@ -85,7 +85,7 @@ Result<Bytes> blob_of(const StoredFeature& feature, const std::string& text) {
   if (!feature.solids[solid].is_proven) {
     return Error{ErrorCode::not_encodable, "this solid is not proven, so there is no blob of it"};
   }
-  return feature.solids[solid].blob;
+  return pipeline::blob_of(feature, solid, limits);
 }
 
 Bytes bytes_of(std::string_view text) {
@@ -95,7 +95,7 @@ Bytes bytes_of(std::string_view text) {
 
 Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
   const std::string_view format = item.format.parameter;
-  if (format == "blob") return blob_of(feature, item.solid);
+  if (format == "blob") return blob_of(feature, item.solid, item.service.options.limits);
   if (format == "proof") {
     const auto encoded = pipeline::unpack(std::move(feature));
     if (!encoded) return encoded.error();
@@ -149,7 +149,7 @@ std::optional<Response> cached(const ItemRequest& item, std::uint64_t version) {
 }
 
 bool is_large(const StoredFeature& feature) {
-  std::size_t bytes = feature.skeleton.bytes.size();
+  std::size_t bytes = feature.skeleton.bytes.size() + feature.page.size();
   for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
   return bytes > kSmallBody;
 }

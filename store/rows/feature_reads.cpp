@@ -58,15 +58,14 @@ Result<StoredFeature> feature_of(const Rows& rows, int row, const std::string& c
   feature.version = static_cast<std::uint64_t>(rows.int8(row, 1));
   const auto kind = shared.kinds.find(rows.int8(row, 2));
   const auto dictionary = shared.dictionaries.find(rows.int8(row, 3));
-  auto solids = unpack_solids(feature.id, static_cast<std::uint64_t>(rows.int8(row, 4)),
-                              as_bytes(rows.text(row, 5)));
-  if (kind == shared.kinds.end() || dictionary == shared.dictionaries.end() || !solids) {
+  const auto unpacked = unpack_solids(feature, static_cast<std::uint64_t>(rows.int8(row, 4)),
+                                      as_bytes(rows.text(row, 5)));
+  if (kind == shared.kinds.end() || dictionary == shared.dictionaries.end() || !unpacked) {
     return damaged(feature.id);
   }
   feature.type = kind->second.type;
   feature.format = kind->second.format;
   feature.header = kind->second.header;
-  feature.solids = *std::move(solids);
   const ByteView text = as_bytes(rows.text(row, 6));
   feature.skeleton = {{text.begin(), text.end()}, dictionary->second};
   feature.box = box_of(rows, row, 7);

@@ -150,6 +150,12 @@ Status check_condition(DatabaseSession& connection, FeatureRefs features,
   return Done{};
 }
 
+std::int64_t blob_bytes_of(const StoredFeature& feature) {
+  std::size_t bytes = feature.page.size();
+  for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
+  return static_cast<std::int64_t>(bytes);
+}
+
 /// The columns of the table `feature_row` for one statement.
 struct FeatureColumns {
   std::vector<std::string_view> id, type, format;
@@ -170,9 +176,7 @@ struct FeatureColumns {
     dictionary.push_back(dictionary_key);
     packed_solids.push_back(pack_solids(feature));
     solids.push_back(static_cast<std::int64_t>(feature.solids.size()));
-    std::size_t blobs = 0;
-    for (const StoredSolid& solid : feature.solids) blobs += solid.blob.size();
-    blob_bytes.push_back(static_cast<std::int64_t>(blobs));
+    blob_bytes.push_back(blob_bytes_of(feature));
     place.push_back(place_number(feature.box));
     unproven.push_back(static_cast<std::int64_t>(feature.unproven()));
     is_proven.push_back(feature.is_proven() ? 1 : 0);
@@ -264,20 +268,21 @@ struct RepackColumns {
   std::vector<std::string_view> id;
   std::vector<ByteView> text;
   std::vector<Bytes> packed_solids;
-  std::vector<std::int64_t> version, dictionary;
+  std::vector<std::int64_t> version, dictionary, blob_bytes;
 
   void add(const StoredFeature& feature, std::int64_t dictionary_key) {
     id.push_back(feature.id);
     version.push_back(static_cast<std::int64_t>(feature.version));
     dictionary.push_back(dictionary_key);
     packed_solids.push_back(pack_solids(feature));
+    blob_bytes.push_back(blob_bytes_of(feature));
     text.push_back(feature.skeleton.bytes);
   }
   Parameters parameters(std::string_view collection) const {
     const std::vector<ByteView> solid_bytes(packed_solids.begin(), packed_solids.end());
     Parameters p;
     p.text(collection).text_array(id).int8_array(version).int8_array(dictionary);
-    p.bytea_array(solid_bytes).bytea_array(text);
+    p.bytea_array(solid_bytes).bytea_array(text).int8_array(blob_bytes);
     return p;
   }
 };
@@ -285,14 +290,15 @@ struct RepackColumns {
 // A row that is locked is being changed: it is left alone.
 constexpr const char* kRepackFeatures = R"(
   WITH w AS MATERIALIZED (
-    SELECT f.collection, f.id, u.d, u.s, u.x
-    FROM unnest($2::text[], $3::int8[], $4::int8[], $5::bytea[], $6::bytea[])
-      AS u (i, v, d, s, x)
+    SELECT f.collection, f.id, u.d, u.s, u.x, u.n
+    FROM unnest($2::text[], $3::int8[], $4::int8[], $5::bytea[], $6::bytea[], $7::int8[])
+      AS u (i, v, d, s, x, n)
     JOIN watertight.feature_row f
       ON hashtextextended(f.id, 0) = hashtextextended(u.i, 0) AND f.id = u.i AND f.version = u.v
     WHERE f.collection = (SELECT key FROM watertight.collection WHERE name = $1)
     FOR UPDATE OF f SKIP LOCKED)
   UPDATE watertight.feature_row f SET packed_solids = w.s, packed_text = w.x,
+    blob_bytes = w.n,
     dictionary = CASE WHEN w.d = 0 THEN 0 ELSE (SELECT key FROM watertight.dictionary
                         WHERE key = w.d AND collection = w.collection) END
   FROM w WHERE f.collection = w.collection

@@ -109,31 +109,35 @@ Facts read_facts(ByteReader& reader, std::string_view id, const Facts* before) {
 
 Bytes pack_solids(const FeatureRecord& feature) {
   ByteWriter writer;
+  if (!feature.page.empty()) writer.u8(kPageMark);
   Expected expected{feature.id, 0};
   for (const StoredSolid& solid : feature.solids) {
     write_facts(writer, feature.id, solid, expected);
   }
   for (const StoredSolid& solid : feature.solids) writer.append(solid.blob);
+  writer.append(feature.page);
   return std::move(writer).bytes();
 }
 
-Result<std::vector<StoredSolid>> unpack_solids(std::string_view id, std::uint64_t number,
-                                               ByteView packed) {
-  ByteReader reader(packed);
+Status unpack_solids(FeatureRecord& feature, std::uint64_t number, ByteView packed) {
+  const bool has_page = !packed.empty() && packed.front() == kPageMark;
+  ByteReader reader(packed.subspan(has_page ? 1 : 0));
   std::vector<Facts> all;
   for (std::uint64_t i = 0; i < number && !reader.failed(); ++i) {
-    all.push_back(read_facts(reader, id, all.empty() ? nullptr : &all.back()));
+    all.push_back(read_facts(reader, feature.id, all.empty() ? nullptr : &all.back()));
   }
-  std::vector<StoredSolid> solids;
+  feature.solids.clear();
   for (Facts& facts : all) {
     const ByteView blob = reader.take(static_cast<std::size_t>(facts.blob));
     facts.solid.blob.assign(blob.begin(), blob.end());
-    solids.push_back(std::move(facts.solid));
+    feature.solids.push_back(std::move(facts.solid));
   }
-  if (reader.failed() || reader.remaining() > 0) {
+  const ByteView page = has_page ? reader.take(reader.remaining()) : ByteView();
+  feature.page.assign(page.begin(), page.end());
+  if (reader.failed() || reader.remaining() > 0 || has_page == page.empty()) {
     return Error{ErrorCode::malformed, "the solids of a stored feature are damaged"};
   }
-  return solids;
+  return Done{};
 }
 
 }  // namespace watertight::store

@@ -8,8 +8,9 @@
 // is not that of the solid before (of the first solid: the feature itself); the number of bytes
 // that its id shares with the feature's, then the length of the rest and the rest follow. Bit 7:
 // geometry and ordinal follow; else the geometry is the next one of the object, and the ordinal 0.
-// Bit 5: the solid is proven; the length of its blob follows. watertight.unpacked_solids
-// (store/migrations.cpp) reads the same in SQL.
+// Bit 5: the solid is proven; the length of its blob follows. Where the first byte is kPageMark,
+// the facts follow it, then the blobs, then one page of all solids whose blob has the length 0.
+// watertight.stored_solids (store/rows/page_schema.h) reads the same in SQL.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +23,14 @@
 
 namespace watertight::store {
 
+/// The first byte where there is a page: a level of detail that is not in the list.
+inline constexpr std::uint8_t kPageMark = 30;
+
 /// The solids of the feature without measures and reports. Cost: linear.
 Bytes pack_solids(const FeatureRecord& feature);
 
-/// The `number` solids that pack_solids() was given, of the feature `id`. Memory: that of the
-/// bytes. Errors: malformed.
-Result<std::vector<StoredSolid>> unpack_solids(std::string_view id, std::uint64_t number,
-                                               ByteView packed);
+/// Gives a feature with an id the `number` solids, and the page, that pack_solids() was given.
+/// Memory: that of the bytes. Errors: malformed.
+Status unpack_solids(FeatureRecord& feature, std::uint64_t number, ByteView packed);
 
 }  // namespace watertight::store

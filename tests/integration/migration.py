@@ -63,7 +63,7 @@ def killed(service, words, seconds):
     return has_ended
 
 
-def check(service, versions):
+def check(service, versions, blobs):
     answers = json.loads((DATA / "answers.json").read_text())
     for name, expected in answers.items():
         collection, feature = name.split("/")
@@ -74,6 +74,12 @@ def check(service, versions):
         status, body = service.request("GET", path + "?f=proof")
         if status != 200 or json.loads(body) != json.loads(expected["proof"]):
             raise SystemExit(f"{name}: {status}, another proof: {body[:2000]!r} for {expected['proof'][:2000]}")
+    for line in blobs:
+        collection, feature, solid, expected = line.split("|")
+        path = f"/collections/{collection}/items/{urllib.parse.quote(feature)}?f=blob&solid={solid}"
+        status, body = service.request("GET", path)
+        if status != 200 or body.hex() != expected:
+            raise SystemExit(f"solid {solid} of {collection}/{feature}: {status}, another blob")
     if service.ask("SELECT count(*) || ' ' || sum(version) FROM watertight.feature") != versions:
         raise SystemExit("features or versions are missing")
     for collection in ("delft", "boxes"):
@@ -87,6 +93,8 @@ def one_round(number):
     with temporary_folder("migration") as folder, Service(PROGRAM, folder) as service:
         service.ask("DROP SCHEMA watertight CASCADE")
         service.ask("", DATA / "store.sql")
+        blobs = service.ask("SELECT concat_ws('|', collection, feature, position, encode(blob, 'hex'))"
+                            " FROM watertight.solid WHERE blob IS NOT NULL").splitlines()
         service.ask(COPY)
         versions = service.ask("SELECT count(*) || ' ' || sum(version) FROM watertight.feature")
         service.stop()
@@ -94,16 +102,19 @@ def one_round(number):
         while not killed(service, ["collections", "list"], random.uniform(0.3, 1 + runs)) and runs < 6:
             runs += 1
         service.start()
-        check(service, versions)
+        check(service, versions, blobs)
         service.stop()
         compacts = 1
         while not killed(service, ["compact", "delft"], random.uniform(0.3, 1 + compacts)) and compacts < 6:
             compacts += 1
         service.start()
-        check(service, versions)
+        check(service, versions, blobs)
+        paged = service.ask("SELECT count(*) FROM watertight.feature_row WHERE substring(packed_solids FOR 1) = '\\x1e'")
+        if compacts < 6 and int(paged) == 0:
+            raise SystemExit("no solids are in pages")
         bytes_now = service.ask("SELECT sum(octet_length(packed_text)) / count(*) FROM watertight.feature_row")
         print(f"round {number}: {versions.split()[0]} features moved in {runs} runs, compacted in {compacts},"
-              f" {bytes_now} bytes of text a feature", flush=True)
+              f" {bytes_now} bytes of text a feature, {paged} features with a page", flush=True)
 
 
 for at in range(ROUNDS):

@@ -121,7 +121,8 @@ def compare_by_sql(database, collection, header, features, names):
     """Compares every solid of every named feature, as wt_decode gives it. Returns the number of
     solids."""
     rows = query(database,
-                 "SELECT feature, object_id, geometry, ordinal, encode(wt_decode(blob), 'hex')"
+                 "SELECT feature, object_id, geometry, ordinal, "
+                 " encode(wt_decode(coalesce(blob, wt_blob(page, slot))), 'hex')"
                  f" FROM watertight.solid WHERE collection = '{collection}'")
     decoded = {}
     for feature, name, geometry, ordinal, ewkb in rows:

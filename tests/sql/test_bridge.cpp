@@ -3,8 +3,10 @@
 #include <cstring>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/bytes.h"
+#include "codec/page.h"
 #include "formats/ewkb.h"
 #include "sql/bridge.h"
 
@@ -32,7 +34,7 @@ struct Reply {
 Reply call(Function function, ByteView bytes, wt_poll poll = nullptr,
            const wt_rule_choice* rules = nullptr) {
   Reply reply;
-  const wt_job job{bytes.data(), bytes.size(), nullptr, poll, 0, 0, rules};
+  const wt_job job{bytes.data(), bytes.size(), nullptr, poll, 0, 0, rules, 0};
   function(&job, &reply.value);
   return reply;
 }
@@ -84,6 +86,24 @@ TEST_CASE("the bridge encodes a valid solid and decodes it to the same bytes") {
   CHECK(info.text().find("\"bytes\":" + std::to_string(blob.value.size)) != std::string::npos);
 }
 
+TEST_CASE("the bridge gives the blobs of a page") {
+  const Reply blob = call(wt_bridge_encode, cube());
+  REQUIRE(blob.state().empty());
+  const Bytes bytes = blob.bytes();
+  const std::vector<ByteView> blobs{bytes, bytes};
+  const auto page = codec::page_of_blobs(blobs);
+  REQUIRE((page && *page));
+  for (const std::int32_t slot : {-1, 0, 1, 2}) {
+    Reply reply;
+    const wt_job job{(*page)->data(), (*page)->size(), nullptr, nullptr, 0, 0, nullptr, slot};
+    wt_bridge_blob(&job, &reply.value);
+    const bool is_there = slot == 0 || slot == 1;
+    CHECK(reply.state() == (is_there ? "" : "22023"));
+    if (is_there) CHECK(reply.bytes() == bytes);
+  }
+  CHECK(call(wt_bridge_blob, bytes).state() == "22P03");
+}
+
 TEST_CASE("the bridge separates valid from invalid and names the findings") {
   CHECK(call(wt_bridge_is_valid, cube()).value.truth);
   const Reply open = call(wt_bridge_is_valid, cube(1));
@@ -101,8 +121,9 @@ TEST_CASE("the bridge separates valid from invalid and names the findings") {
 }
 
 TEST_CASE("the bridge fails on bytes that are no solid, with the offset") {
-  for (const Function function : {wt_bridge_validate, wt_bridge_is_valid, wt_bridge_encode,
-                                  wt_bridge_decode, wt_bridge_info, wt_bridge_rules_of}) {
+  for (const Function function :
+       {wt_bridge_validate, wt_bridge_is_valid, wt_bridge_encode, wt_bridge_decode, wt_bridge_info,
+        wt_bridge_rules_of, wt_bridge_blob}) {
     CHECK(!call(function, {}).state().empty());
     CHECK(!call(function, as_bytes("garbage")).state().empty());
     const Reply truncated = call(function, ByteView(cube()).first(20));
@@ -152,7 +173,7 @@ TEST_CASE("an engine that finds no helpers is made and ended") {
   wt_engine* const engine = wt_engine_make("/no/such/folder");
   REQUIRE(engine != nullptr);
   const Bytes ewkb = cube();
-  const wt_job job{ewkb.data(), ewkb.size(), engine, nullptr, 0, 0, nullptr};
+  const wt_job job{ewkb.data(), ewkb.size(), engine, nullptr, 0, 0, nullptr, 0};
   Reply reply;
   wt_bridge_is_valid(&job, &reply.value);
   CHECK(reply.value.truth);  // a cube needs no helper

@@ -409,6 +409,54 @@ TEST_CASE("a page with another number of solids than the index states is refused
   }
 }
 
+/// The page of the solids of blobs, if they have one.
+std::optional<Bytes> page_of(const std::vector<Bytes>& blobs) {
+  const std::vector<ByteView> views(blobs.begin(), blobs.end());
+  auto page = codec::page_of_blobs(views);
+  REQUIRE(page);
+  return *std::move(page);
+}
+
+TEST_CASE("blobs of one grid share a page, and come back from it") {
+  std::vector<Bytes> blobs;
+  for (const double x : {0.0, 0.0, 10.0}) blobs.push_back(blob_of(box_at(x, grid_of(1))));
+  const auto page = page_of(blobs);
+  REQUIRE(page);
+  CHECK(page->size() < blobs[0].size() + blobs[1].size() + blobs[2].size());
+  const auto decoded = codec::decode_page(*page);
+  REQUIRE(decoded);
+  REQUIRE(decoded->size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto blob = codec::blob_of((*decoded)[i]);
+    REQUIRE(blob);
+    CHECK(*blob == blobs[i]);
+  }
+  // The page goes into a page file as it is, beside others.
+  codec::PageFileWriter writer;
+  writer.add_page(*page, 3);
+  REQUIRE(writer.add_blob(blobs[2]));
+  const auto file = std::move(writer).finish();
+  REQUIRE(file);
+  const auto reader = opened(*file);
+  REQUIRE(reader.size() == 4);
+  CHECK(reader.solid(1)->solid == (*decoded)[1].solid);
+  CHECK(reader.solid(3)->solid == (*decoded)[2].solid);
+}
+
+TEST_CASE("blobs that would not come back have no page") {
+  const Bytes blob = blob_of(box_at(0, grid_of(1)));
+  CHECK_FALSE(page_of({}));
+  CHECK_FALSE(page_of({blob}));
+  CHECK_FALSE(page_of({blob, blob_of(box_at(0, grid_of(3)))}));
+  EncodeOptions raw;
+  raw.mode = Mode::raw;
+  CHECK_FALSE(page_of({blob, blob_of(box_at(0, grid_of(1)), raw)}));
+  CHECK_FALSE(page_of(std::vector<Bytes>(codec::kMaxPageSolids + 1, blob)));
+  REQUIRE(page_of(std::vector<Bytes>(codec::kMaxPageSolids, blob)));
+  const std::vector<ByteView> damaged{blob, ByteView(blob).first(blob.size() - 1)};
+  CHECK_FALSE(codec::page_of_blobs(damaged));
+}
+
 TEST_CASE("page files of other versions are unsupported") {
   Bytes file = page_file_of({}, 256);
   file[4] = 2;

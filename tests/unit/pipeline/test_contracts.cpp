@@ -163,6 +163,65 @@ TEST_CASE("a store gives a line of a sequence back byte for byte, and keeps it c
   CHECK(*written == line);
 }
 
+/// A building with two boxes and a solid without a top: the boxes share their lower corners.
+const std::string kLevels =
+    R"({"type":"CityJSONFeature","id":"a","CityObjects":{"a":{"type":"Building","geometry":[)"
+    R"({"type":"Solid","lod":"1.2","boundaries":[)" +
+    std::string(samples::kBoxFacets) + R"(]},{"type":"Solid","lod":"1.3","boundaries":[)" +
+    std::string(samples::kOpenFacets) +
+    R"(]},{"type":"Solid","lod":"2.2","boundaries":[)"
+    "[[[0,3,2,1]],[[8,9,10,11]],[[0,1,9,8]],[[1,2,10,9]],[[2,3,11,10]],[[3,0,8,11]]]"
+    R"(]}]}},"vertices":)"
+    "[[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,2500],[1000,0,2500],[1000,1000,2500],"
+    "[0,1000,2500],[0,0,2600],[1000,0,2600],[1000,1000,2600],[0,1000,2600]]}";
+
+TEST_CASE("the solids of a feature are stored as one page, and come back as they were") {
+  const std::string text = samples::sequence({kLevels});
+  auto document = formats::read_document(as_bytes(text), Format::city_json_seq);
+  REQUIRE(document);
+  pipeline::IngestOptions options;
+  options.policy = pipeline::Policy::keep;
+  const auto encoded = pipeline::encode_document(*document, nullptr, options);
+  REQUIRE(encoded);
+  const pipeline::EncodedFeature& before = encoded->document.features.at(0);
+  const auto stored = pipeline::pack(before, nullptr);
+  REQUIRE(stored);
+  REQUIRE_FALSE(stored->page.empty());
+  CHECK(stored->page.size() < before.solids[0].blob.size() + before.solids[2].blob.size());
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(stored->solids[i].blob.empty());
+    if (i != 1) CHECK(*pipeline::blob_of(*stored, i) == before.solids[i].blob);
+  }
+  const auto after = pipeline::unpack(*stored);
+  REQUIRE(after);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(after->solids[i].measures == before.solids[i].measures);
+    CHECK(after->solids[i].report == before.solids[i].report);
+  }
+  const auto back = pipeline::from_stored(*stored);
+  REQUIRE(back);
+  const auto written = formats::write_document(*back, Format::city_json_seq);
+  REQUIRE(written);
+  CHECK(as_text(*written) == text);
+  // Files take the page as it is, or encode its solids together with others.
+  for (const pipeline::SolidLayout layout :
+       {pipeline::SolidLayout::blobs, pipeline::SolidLayout::pages}) {
+    pipeline::EncodedDocument file{after->format, after->header, {}, {*after}};
+    const auto container = pipeline::write_container(file, {.layout = layout});
+    REQUIRE(container);
+    const auto documents = pipeline::decode_container(*container);
+    REQUIRE(documents);
+    CHECK(as_text(*formats::write_document(documents->at(0), Format::city_json_seq)) == text);
+  }
+  // A page of other solids than the feature's is refused.
+  StoredFeature other = *stored;
+  other.solids[1].is_proven = true;
+  CHECK(pipeline::from_stored(other).error().code == ErrorCode::malformed);
+  other = *stored;
+  other.page.pop_back();
+  CHECK(pipeline::from_stored(other).error().code == ErrorCode::malformed);
+}
+
 TEST_CASE("a skeleton that was changed to plain text in the database is refused") {
   auto encoded = pipeline::encode_document(read_kept(kBox, Format::city_json), nullptr, {});
   REQUIRE(encoded);

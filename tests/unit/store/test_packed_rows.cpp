@@ -37,6 +37,26 @@ bool are_equal(const StoredSolid& a, const StoredSolid& b) {
          a.lod == b.lod && a.blob == b.blob && a.is_proven == b.is_proven;
 }
 
+/// The bytes give the solids and the page, and no shorter ones do.
+void check_unpacked(const store::FeatureRecord& all, const Bytes& packed) {
+  store::FeatureRecord back;
+  back.id = all.id;
+  REQUIRE(store::unpack_solids(back, all.solids.size(), packed));
+  REQUIRE(back.solids.size() == all.solids.size());
+  for (std::size_t i = 0; i < back.solids.size(); ++i) {
+    CHECK(are_equal(back.solids[i], all.solids[i]));
+  }
+  CHECK(back.page == all.page);
+  for (std::size_t size = 0; size + all.page.size() < packed.size(); ++size) {
+    CHECK_FALSE(store::unpack_solids(back, all.solids.size(), ByteView(packed).first(size)));
+  }
+  const Bytes without_page(packed.begin(),
+                           packed.end() - static_cast<std::ptrdiff_t>(all.page.size()));
+  CHECK(store::unpack_solids(back, all.solids.size(), without_page).has_value() ==
+        all.page.empty());
+  CHECK_FALSE(store::unpack_solids(back, 1'000'000'000, packed));
+}
+
 std::vector<std::string> texts(int count, int first) {
   std::vector<std::string> all;
   for (int i = first; i < first + count; ++i) {
@@ -62,14 +82,17 @@ TEST_CASE("solids come back from their bytes, and what is expected takes two byt
       {solid_of("h\u00e4user-0", 0, "1.2", 1), solid_of("h\u00e4user-0", 1, "1.3", 2), other,
        unproven, solid_of("h\u00e8", 4294967295U, "3.3", 0), solid_of("h\u00e8", 0, "x", 1)});
   const Bytes packed = store::pack_solids(all);
-  const auto back = store::unpack_solids(all.id, all.solids.size(), packed);
-  REQUIRE(back);
-  REQUIRE(back->size() == all.solids.size());
-  for (std::size_t i = 0; i < back->size(); ++i) CHECK(are_equal((*back)[i], all.solids[i]));
-  for (std::size_t size = 0; size < packed.size(); ++size) {
-    CHECK_FALSE(store::unpack_solids(all.id, all.solids.size(), ByteView(packed).first(size)));
-  }
-  CHECK_FALSE(store::unpack_solids(all.id, 1'000'000'000, packed));
+  check_unpacked(all, packed);
+}
+
+TEST_CASE("a page of solids comes back behind their facts and blobs") {
+  auto all = feature_with({solid_of("h\u00e4user-0", 0, "1.2", 0), solid_of("b", 1, "", 3),
+                           solid_of("c", 0, "x", 0), solid_of("c", 1, "2.2", 0)});
+  all.solids[2].is_proven = false;
+  all.page = {9, 8, 7, 6};
+  const Bytes packed = store::pack_solids(all);
+  CHECK(packed.front() == store::kPageMark);
+  check_unpacked(all, packed);
 }
 
 TEST_CASE("SQL sees the same solids as the store") {
@@ -88,6 +111,19 @@ TEST_CASE("SQL sees the same solids as the store") {
         "buildings|h\u00e4user|h\u00e4user-0|0|0|0|1.2|-1 "
         "buildings|h\u00e4user|h\u00e4user-0|1|0|1|odd|200 "
         "buildings|h\u00e4user|h\u00e8|5|300|2||2");
+  feature.solids[1].blob = {};
+  feature.page = {1, 2, 3};
+  feature.solids.push_back(solid_of("h\u00e8", 6, "", 0));
+  REQUIRE(store->put(std::vector{feature}));
+  CHECK(database.ask("SELECT string_agg(concat_ws('|', object_id, geometry, is_proven::int, lod,"
+                     " coalesce(length(blob), -1), coalesce(encode(page, 'hex'), '-'), slot), ' '"
+                     " ORDER BY position) FROM watertight.solid") ==
+        "h\u00e4user-0|0|0|1.2|-1|- h\u00e4user-0|1|1|odd|-1|010203|0 "
+        "h\u00e8|5|1||2|- h\u00e8|6|1||-1|010203|1");
+  const auto got = store->get("buildings", feature.id);
+  REQUIRE(got);
+  CHECK(got->page == feature.page);
+  CHECK(database.ask("SELECT blob_bytes::text FROM watertight.feature") == "5");
 }
 
 TEST_CASE("a dictionary makes texts smaller, and they come back with it alone") {

@@ -121,8 +121,12 @@ Result<std::vector<StoredSolid>> unpack_solids(std::string_view id, std::uint64_
                                                ByteView packed) {
   ByteReader reader(packed);
   std::vector<Facts> all;
-  for (std::uint64_t i = 0; i < number && !reader.failed(); ++i) {
+  // The id of one solid may be that of many: without its limit, memory would grow with the square
+  // of the bytes.
+  bool is_good = true;
+  for (std::uint64_t i = 0; i < number && is_good; ++i) {
     all.push_back(read_facts(reader, id, all.empty() ? nullptr : &all.back()));
+    is_good = !reader.failed() && all.back().solid.object_id.size() <= kLongestId;
   }
   std::vector<StoredSolid> solids;
   for (Facts& facts : all) {
@@ -130,7 +134,7 @@ Result<std::vector<StoredSolid>> unpack_solids(std::string_view id, std::uint64_
     facts.solid.blob.assign(blob.begin(), blob.end());
     solids.push_back(std::move(facts.solid));
   }
-  if (reader.failed() || reader.remaining() > 0) {
+  if (!is_good || reader.failed() || reader.remaining() > 0) {
     return Error{ErrorCode::malformed, "the solids of a stored feature are damaged"};
   }
   return solids;

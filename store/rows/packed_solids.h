@@ -12,6 +12,7 @@
 // (store/migrations.cpp) reads the same in SQL.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -22,11 +23,16 @@
 
 namespace watertight::store {
 
+/// The most bytes of the id of a feature or an object. A B-tree entry of PostgreSQL holds 2704
+/// bytes; two ids and a collection name must fit together.
+constexpr std::size_t kLongestId = 1024;
+
 /// The solids of the feature without measures and reports. Cost: linear.
 Bytes pack_solids(const FeatureRecord& feature);
 
 /// The `number` solids that pack_solids() was given, of the feature `id`. Memory: that of the
-/// bytes. Errors: malformed.
+/// bytes, and an id for each solid. Errors: malformed; also for an id that is longer than
+/// kLongestId.
 Result<std::vector<StoredSolid>> unpack_solids(std::string_view id, std::uint64_t number,
                                                ByteView packed);
 

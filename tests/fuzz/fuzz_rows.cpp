@@ -18,7 +18,6 @@
 namespace {
 
 using namespace watertight;
-using pipeline::StoredFeature;
 
 constexpr std::string_view kHeader =
     R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"

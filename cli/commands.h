@@ -86,6 +86,7 @@ Exit run(const DeleteCommand& command);
 struct DecodeCommand {
   std::string input;
   std::string output;
+  std::size_t jobs = 1;
 };
 Exit run(const DecodeCommand& command);
 

@@ -137,8 +137,10 @@ Status open_encoded(const std::string& argument, Encoded& encoded) {
 }
 
 /// The documents of a Watertight file, or the one document of a blob.
-Result<std::vector<Document>> load_encoded(Encoded& encoded) {
-  if (encoded.container) return pipeline::decode_container(*encoded.container);
+Result<std::vector<Document>> load_encoded(Encoded& encoded, std::size_t jobs) {
+  if (encoded.container) {
+    return pipeline::decode_container(*encoded.container, {}, static_cast<unsigned>(jobs));
+  }
   auto input = load_input(encoded.whole.name, encoded.whole.bytes, {});
   if (!input) return std::move(input).error();
   if (input->kind == InputKind::document) {
@@ -470,7 +472,7 @@ Exit run(const DecodeCommand& command) {
   if (Status opened = open_encoded(command.input, encoded); !opened) {
     return fail(command.input, opened.error());
   }
-  const auto documents = load_encoded(encoded);
+  const auto documents = load_encoded(encoded, command.jobs);
   if (!documents) return fail(command.input, documents.error());
   if (documents->empty()) return fail(command.input, {ErrorCode::malformed, "no document in it"});
   if (documents->size() > 1 && command.output == "-") {

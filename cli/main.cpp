@@ -35,11 +35,10 @@ CLI::Validator in_range(double min, double max, const std::string& words) {
   return CLI::Validator(check, words);
 }
 
-void add_jobs(CLI::App& app, std::size_t& jobs) {
+void add_jobs(CLI::App& app, std::size_t& jobs,
+              const std::string& words = "features validated at once") {
   jobs = default_jobs();
-  app.add_option("-j,--jobs", jobs, "features validated at once")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
+  app.add_option("-j,--jobs", jobs, words)->check(CLI::Range(1, 256))->capture_default_str();
 }
 
 void add_store(CLI::App& app, StoreChoice& store) {
@@ -237,6 +236,7 @@ void add_decode(CLI::App& app, DecodeCommand& command, Chosen& chosen) {
   sub->add_option("-o,--output", command.output,
                   "its extension decides the format; - for standard output in the stored format")
       ->required();
+  add_jobs(*sub, command.jobs, "blocks of a file read at once");
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 

@@ -71,17 +71,19 @@ class TextCoder {
     }();
     return kCoder;
   }
-  /// A coder for single texts like the examples. Cost: that of packing them.
-  static TextCoder of_examples(std::span<const Text> texts) {
+  /// A coder for single texts, which has learned from the JSON examples of the format.
+  static TextCoder for_single_texts() {
     static const TextCoder kCoder = [] {
       TextCoder coder(kSmall);
       const std::vector<Text> all = examples();
       coder.learn(std::span(all).first(kJsonExamples), 1, 8);
       return coder;
     }();
-    TextCoder coder = kCoder;
-    coder.learn(texts, 8, 64);
-    return coder;
+    return kCoder;
+  }
+  /// A coder that has learned nothing. For tests.
+  static TextCoder unlearned(bool is_for_single_texts) {
+    return TextCoder(is_for_single_texts ? kSmall : kLarge);
   }
 
   /// Codes one text and returns it. The stream fails when all texts that are read have more bytes
@@ -89,6 +91,12 @@ class TextCoder {
   std::string code(EntropyStream& stream, const Text& text) {
     stream_ = &stream;
     return code_text(text);
+  }
+  /// Learns from texts by reading them: so what it knows does not depend on who wrote them.
+  void learn_packed(EntropyStream& stream, std::uint64_t count) {
+    for (std::uint64_t i = 0; i < count && !stream.failed(); ++i) code(stream, {});
+    end_learning(8, 64);
+    values_.make_indexes();
   }
   void allow(std::uint64_t most_bytes) { left_ = most_bytes; }
   bool is_over_limit() const { return is_over_limit_ || strings_.is_over_limit(); }
@@ -108,6 +116,9 @@ class TextCoder {
   void learn(std::span<const Text> texts, std::uint32_t most_answers, std::uint32_t most_mixed) {
     auto measured = EntropyStream::meter();
     for (const Text& text : texts) code(measured, text);
+    end_learning(most_answers, most_mixed);
+  }
+  void end_learning(std::uint32_t most_answers, std::uint32_t most_mixed) {
     mixer_.soften(most_answers, most_mixed);
     restart();
     json_path_.restart();
@@ -244,10 +255,18 @@ class TextCoder {
   std::string last_text_;
 };
 
+// The head of packed texts is so many times their count, and their form.
+constexpr std::uint64_t kForms = 4;
+constexpr std::uint64_t kByColumn = 0;
+constexpr std::uint64_t kPlain = 1;
+
 // So many texts may be packed, and so many more for each byte: a text without bytes takes memory
 // too.
 constexpr std::uint64_t kFewTexts = std::uint64_t{1} << 18U;
 constexpr std::uint64_t kMostTextsForAByte = 16;
+bool is_too_many(std::uint64_t texts, ByteView bytes) {
+  return texts > kFewTexts + kMostTextsForAByte * bytes.size();
+}
 constexpr std::size_t kLongText = std::size_t{1} << 20U;
 
 Error over_limit(std::uint64_t most_bytes) {
@@ -260,6 +279,22 @@ Error damaged(const EntropyStream& stream) {
 }
 
 }  // namespace
+
+Error unknown_form(std::uint64_t form) {
+  return {ErrorCode::unsupported, std::string("texts of form ")
+                                      .append(std::to_string(form))
+                                      .append(" are not known: a newer program wrote them")};
+}
+
+Bytes packed_examples(bool are_for_single_texts) {
+  auto stream = EntropyStream::writer();
+  TextCoder coder = TextCoder::unlearned(are_for_single_texts);
+  const std::vector<Text> all = examples();
+  for (const Text& text : std::span(all).first(are_for_single_texts ? kJsonExamples : all.size())) {
+    coder.code(stream, text);
+  }
+  return std::move(stream).finish();
+}
 
 struct Examples::Learned {
   explicit Learned(TextCoder learned) : coder(std::move(learned)) {}
@@ -278,9 +313,29 @@ struct Examples::Learned {
 Examples::Examples(std::unique_ptr<const Learned> learned) : learned_(std::move(learned)) {}
 Examples::~Examples() = default;
 
-std::shared_ptr<const Examples> Examples::of(std::span<const Text> texts) {
+Bytes Examples::pack_examples(std::span<const Text> texts) {
+  auto stream = EntropyStream::writer();
+  TextCoder coder = TextCoder::for_single_texts();
+  for (const Text& text : texts) coder.code(stream, text);
+  ByteWriter writer;
+  writer.varint(texts.size());
+  writer.append(std::move(stream).finish());
+  return std::move(writer).bytes();
+}
+
+Result<std::shared_ptr<const Examples>> Examples::of(ByteView examples, std::uint64_t most_bytes) {
+  ByteReader reader(examples);
+  const std::uint64_t count = reader.varint();
+  if (reader.failed() || is_too_many(count, examples)) return reader.error("examples");
+  auto stream = EntropyStream::reader_without_costs(reader.take(reader.remaining()));
+  TextCoder coder = TextCoder::for_single_texts();
+  coder.allow(most_bytes);
+  coder.learn_packed(stream, count);
+  if (coder.is_over_limit()) return over_limit(most_bytes);
+  if (!stream.is_finished()) return damaged(stream);
+  coder.allow(~std::uint64_t{0});
   return std::shared_ptr<const Examples>(
-      new Examples(std::make_unique<const Learned>(TextCoder::of_examples(texts))));
+      new Examples(std::make_unique<const Learned>(std::move(coder))));
 }
 
 Bytes Examples::pack(const Text& text) const {
@@ -311,7 +366,7 @@ Bytes pack_texts(std::span<const Text> texts) {
   auto plain = pack_plainly(texts, packed.size());
   const bool is_plain = plain && plain->size() < packed.size();
   ByteWriter writer;
-  writer.varint(2 * texts.size() + (is_plain ? 1 : 0));
+  writer.varint(kForms * texts.size() + (is_plain ? kPlain : kByColumn));
   writer.append(is_plain ? *plain : packed);
   return std::move(writer).bytes();
 }
@@ -319,11 +374,11 @@ Bytes pack_texts(std::span<const Text> texts) {
 Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most_bytes) {
   ByteReader reader(bytes);
   const std::uint64_t head = reader.varint();
-  const std::uint64_t count = head / 2;
-  if (reader.failed() || count > kFewTexts + kMostTextsForAByte * bytes.size()) {
-    return reader.error("texts");
-  }
-  if (head % 2 == 1) return unpack_plainly(reader.take(reader.remaining()), count, most_bytes);
+  const std::uint64_t count = head / kForms;
+  const std::uint64_t form = head % kForms;
+  if (!reader.failed() && form > kPlain) return unknown_form(form);
+  if (reader.failed() || is_too_many(count, bytes)) return reader.error("texts");
+  if (form == kPlain) return unpack_plainly(reader.take(reader.remaining()), count, most_bytes);
   auto stream = EntropyStream::reader_without_costs(reader.take(reader.remaining()));
   TextCoder coder = TextCoder::after_examples();
   coder.allow(most_bytes);

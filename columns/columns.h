@@ -36,8 +36,11 @@ struct Text {
 /// changes. Thread-safe. Memory: some 2 MB.
 class Examples {
  public:
-  /// Cost: that of packing the texts.
-  static std::shared_ptr<const Examples> of(std::span<const Text> texts);
+  /// Packs examples for of(). Cost: that of packing the texts.
+  static Bytes pack_examples(std::span<const Text> texts);
+  /// Learns from packed examples by reading them, which may be hostile. Errors: those of
+  /// unpack_texts().
+  static Result<std::shared_ptr<const Examples>> of(ByteView examples, std::uint64_t most_bytes);
   ~Examples();
   Examples(const Examples&) = delete;
   Examples& operator=(const Examples&) = delete;
@@ -62,5 +65,13 @@ Bytes pack_texts(std::span<const Text> texts);
 /// of the texts. Errors: malformed; limit_exceeded as soon as the texts have more than
 /// `most_bytes`.
 Result<std::vector<std::string>> unpack_texts(ByteView bytes, std::uint64_t most_bytes);
+
+/// The error for texts of a form that only newer programs know.
+Error unknown_form(std::uint64_t form);
+
+/// The examples of the format (docs/format-columns.md, "Examples"), packed by a coder that has
+/// learned nothing: those of packed texts, or those of single texts. They are part of the format
+/// and never change. For tests.
+Bytes packed_examples(bool are_for_single_texts);
 
 }  // namespace watertight::columns

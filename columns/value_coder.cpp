@@ -30,6 +30,14 @@ void ValueCoder::restart() {
   last_number_.reset();
 }
 
+void ValueCoder::make_indexes() {
+  for (std::uint32_t column = 0; column < columns_.size(); ++column) {
+    const std::vector<std::uint32_t>& values = columns_[column].values;
+    for (std::uint32_t i = 0; i < values.size(); ++i) index_of_[key_of(column, values[i])] = i;
+  }
+  uuids_.make_index();
+}
+
 void ValueCoder::pass(std::optional<std::int64_t> number) {
   before_last_ = last_;
   last_ = 0;

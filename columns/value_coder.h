@@ -32,6 +32,8 @@ class ValueCoder {
   /// when the text that is read is longer than `most_bytes`.
   std::string_view code(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings,
                         const Place& place, std::string_view text, std::size_t most_bytes);
+  /// Makes what a writer needs and a reader leaves out, so that a coder that has read can write.
+  void make_indexes();
   /// Takes note of a value that was coded elsewhere.
   void pass(std::optional<std::int64_t> number);
   /// Stands for the last value.

@@ -19,10 +19,11 @@ constexpr std::size_t kTrials = 24;  // the samples with which dictionaries are 
 constexpr double kWorthwhile = 0.96;
 constexpr double kOutgrown = 1.25;
 constexpr double kFitUnit = 4096;
+constexpr std::uint64_t kForm = 0;  // of dictionaries, and of the texts that are packed with them
 
 const Examples& no_examples() {
-  static const std::shared_ptr<const Examples> kNone = Examples::of({});
-  return *kNone;
+  static const auto kNone = Examples::of(Examples::pack_examples({}), 0);
+  return **kNone;
 }
 
 /// Samples at even distances, from the first or from the middle of a distance.
@@ -53,13 +54,14 @@ Result<double> packed_share(std::span<const std::string> texts, const TextDictio
   return after / before;
 }
 
-/// The content of a dictionary: how well it fits, then its examples.
+/// The content of a dictionary: its form, how well it fits, then its examples.
 Bytes content_of(std::span<const std::string> examples, double fit) {
   std::vector<Text> texts;
   for (const std::string& example : examples) texts.push_back({TextKind::json, example});
   ByteWriter writer;
+  writer.varint(kForm);
   writer.varint(static_cast<std::uint64_t>(std::lround(fit * kFitUnit)));
-  writer.append(columns::pack_texts(texts));
+  writer.append(Examples::pack_examples(texts));
   return std::move(writer).bytes();
 }
 
@@ -67,13 +69,13 @@ Bytes content_of(std::span<const std::string> examples, double fit) {
 
 Result<DictionaryPointer> TextDictionary::of(Bytes content) {
   ByteReader reader(content);
+  const std::uint64_t form = reader.varint();
+  if (form != kForm) return columns::unknown_form(form);
   const double fit = static_cast<double>(reader.varint()) / kFitUnit;
-  const auto examples =
-      columns::unpack_texts(reader.take(reader.remaining()), 2 * kMostExampleBytes);
+  if (reader.failed()) return reader.error("dictionary");
+  auto examples = Examples::of(reader.take(reader.remaining()), 2 * kMostExampleBytes);
   if (!examples) return examples.error();
-  std::vector<Text> texts;
-  for (const std::string& example : *examples) texts.push_back({TextKind::json, example});
-  return DictionaryPointer(new TextDictionary(std::move(content), fit, Examples::of(texts)));
+  return DictionaryPointer(new TextDictionary(std::move(content), fit, *std::move(examples)));
 }
 
 Result<Bytes> pack(std::string_view text, const TextDictionary* dictionary) {

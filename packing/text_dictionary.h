@@ -20,7 +20,8 @@ namespace watertight::packing {
 /// Examples of texts. Never changes. Thread-safe. Memory: kDictionaryMemory.
 class TextDictionary {
  public:
-  /// The dictionary of content(). Cost: about 10 ms for each 100 kB of examples. Errors: malformed.
+  /// The dictionary of content(). Cost: about 10 ms for each 100 kB of examples. Errors: malformed;
+  /// unsupported for a dictionary of a newer program.
   static Result<std::shared_ptr<const TextDictionary>> of(Bytes content);
   /// The share of a text's bytes that packed texts took when it was made.
   double fit() const { return fit_; }

@@ -94,7 +94,8 @@ Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& lim
   return decode_container(*file, limits);
 }
 
-Result<std::vector<Document>> decode_container(ContainerFile& file, const Limits& limits) {
+Result<std::vector<Document>> decode_container(ContainerFile& file, const Limits& limits,
+                                               unsigned threads) {
   std::vector<Document> documents;
   for (const BlockDocument& shared : file.documents()) {
     const auto format = formats::format_named(shared.format);
@@ -106,6 +107,7 @@ Result<std::vector<Document>> decode_container(ContainerFile& file, const Limits
   }
   std::vector<Ordered> ordered(documents.size());
   for (std::uint64_t i = 0; i < file.block_count(); ++i) {
+    if (threads > 1 && i % threads == 0) file.read_ahead(i, threads);
     auto block = file.block(i);
     if (!block) return std::move(block).error();
     for (ReadFeature& feature : block->features) {

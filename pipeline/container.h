@@ -29,8 +29,10 @@ Result<Feature> restored(ReadFeature feature, const Limits& limits);
 /// The documents in a Watertight file, with all their features. The bytes may be hostile. Errors:
 /// malformed (with byte offset), unsupported (version), limit_exceeded; those of decode().
 Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& limits = {});
-/// The same for an opened file. Features come in the order of their documents.
-Result<std::vector<Document>> decode_container(ContainerFile& file, const Limits& limits = {});
+/// The same for an opened file, with several blocks read at once where `threads` is greater than 1.
+/// Features come in the order of their documents.
+Result<std::vector<Document>> decode_container(ContainerFile& file, const Limits& limits = {},
+                                               unsigned threads = 1);
 
 /// A solid that is not proven, and its place in the document.
 struct UnprovenSolid {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <type_traits>
 
 #include "base/assert.h"
 #include "codec/entropy/counter.h"
@@ -18,6 +19,19 @@ constexpr std::uint32_t kMantissaStates =
     7;  // the modelled bits so far: none (1 state), one (2) or two (4)
 constexpr std::uint32_t kMantissaLengths = 16;
 constexpr int kModelledBits = 3;
+constexpr std::uint32_t kMostUnrolled = 6;  // nearly all families have fewer inputs
+
+/// Calls a function with the number of inputs, as a constant if it is at most `most`: the compiler
+/// then unrolls the loops over the inputs.
+template <std::uint32_t most, class Function>
+auto with_count(std::uint32_t inputs, const Function& function) {
+  if constexpr (most == 0) {
+    return function(inputs);
+  } else {
+    if (inputs == most) return function(std::integral_constant<std::uint32_t, most>{});
+    return with_count<most - 1>(inputs, function);
+  }
+}
 
 }  // namespace
 
@@ -78,49 +92,56 @@ void ModelBank::set_first_values() {
   }
 }
 
-ModelBank::Mix ModelBank::mix(const Family& family, std::uint32_t selector,
+template <class Count>
+ModelBank::Mix ModelBank::mix(Count inputs, const Family& family, const std::uint32_t* weight,
                               const std::uint32_t* contexts) const {
   Mix result;
   const std::uint32_t* values = values_.data();
-  const std::uint32_t* weight = values + family.first_weight + selector * (family.inputs + 1);
   const auto weighted = [](std::uint32_t weight_bits, std::int32_t input) {
     return std::int64_t{static_cast<std::int32_t>(weight_bits)} * input;
   };
-  std::int64_t sum = 0;
-  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+  std::int64_t sum = weighted(weight[inputs], kBiasInput);
+  for (std::uint32_t i = 0; i < inputs; ++i) {
     WATERTIGHT_ASSERT(contexts[i] < family.sizes[i]);
     result.counter[i] = family.first_counter[i] + contexts[i];
     result.input[i] = input_of(values[result.counter[i]]);
     sum += weighted(weight[i], result.input[i]);
   }
-  result.input[family.inputs] = kBiasInput;
-  sum += weighted(weight[family.inputs], kBiasInput);
+  result.input[inputs] = kBiasInput;
   result.ones = probability_of(sum);
   return result;
 }
 
-bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
-                        const std::uint32_t* contexts, bool value) {
-  const Mix mixed = mix(family, selector, contexts);
+template <class Count>
+bool ModelBank::code_at(Count inputs, EntropyStream& stream, const Family& family,
+                        std::uint32_t selector, const std::uint32_t* contexts, bool value) {
+  std::uint32_t* const values = values_.data();
+  std::uint32_t* const weight = values + family.first_weight + selector * (inputs + 1);
+  const Mix mixed = mix(inputs, family, weight, contexts);
   if (trials_ > 0) note_changes(family, selector, mixed);
   const bool bit = stream.code(value, mixed.ones);
 
-  std::uint32_t* values = values_.data();
   std::uint32_t& seen = values[family.first_rate + selector];
-  std::uint32_t* weight = values + family.first_weight + selector * (family.inputs + 1);
   const std::int64_t step = ((bit ? 65536 : 0) - static_cast<std::int64_t>(mixed.ones)) *
                             mixing_rate(seen) * (is_agile_ ? 2 : 1);
-  for (std::uint32_t i = 0; i <= family.inputs; ++i) {
+  for (std::uint32_t i = 0; i <= inputs; ++i) {
     const std::int32_t moved =
         moved_weight(static_cast<std::int32_t>(weight[i]), step, mixed.input[i]);
     weight[i] = static_cast<std::uint32_t>(moved);
   }
   seen = std::min(seen + 1, kMaxMixed);
-  for (std::uint32_t i = 0; i < family.inputs; ++i) {
+  for (std::uint32_t i = 0; i < inputs; ++i) {
     std::uint32_t& counter = values[mixed.counter[i]];
     counter = learned(counter, bit);
   }
   return bit;
+}
+
+bool ModelBank::code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
+                        const std::uint32_t* contexts, bool value) {
+  return with_count<kMostUnrolled>(family.inputs, [&](auto inputs) {
+    return code_at(inputs, stream, family, selector, contexts, value);
+  });
 }
 
 void ModelBank::note_from_now() {
@@ -164,7 +185,10 @@ void ModelBank::undo(std::size_t left) {
 std::uint32_t ModelBank::probability(std::uint32_t family, std::uint32_t selector,
                                      std::span<const std::uint32_t> contexts) const {
   WATERTIGHT_ASSERT(family < number_base_ && contexts.size() == families_[family].inputs);
-  return mix(families_[family], selector, contexts.data()).ones;
+  const Family& asked = families_[family];
+  const std::uint32_t* const weight =
+      &values_[asked.first_weight + selector * (asked.inputs + std::size_t{1})];
+  return mix(asked.inputs, asked, weight, contexts.data()).ones;
 }
 
 bool ModelBank::code(EntropyStream& stream, std::uint32_t family, std::uint32_t selector,

@@ -137,7 +137,12 @@ class ModelBank {
   void add_family(const FamilyShape& shape);
   void set_first_values();
   std::int32_t first_weight(std::uint32_t inputs) const;
-  Mix mix(const Family& family, std::uint32_t selector, const std::uint32_t* contexts) const;
+  template <class Count>
+  Mix mix(Count inputs, const Family& family, const std::uint32_t* weight,
+          const std::uint32_t* contexts) const;
+  template <class Count>
+  bool code_at(Count inputs, EntropyStream& stream, const Family& family, std::uint32_t selector,
+               const std::uint32_t* contexts, bool value);
   bool code_at(EntropyStream& stream, const Family& family, std::uint32_t selector,
                const std::uint32_t* contexts, bool value);
 

@@ -37,6 +37,10 @@ class UuidCoder {
   /// Codes the digits of a UUID and the case of its letters.
   Uuid code(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid);
 
+  /// Makes a coder that has read able to write.
+  void make_index() {
+    for (std::size_t i = 0; i < known_.size(); ++i) number_of_.emplace(known_[i], i);
+  }
   /// Whether a UUID was coded before. For writers.
   bool knows(const Uuid& uuid) const { return number_of_.contains(uuid.digits); }
 

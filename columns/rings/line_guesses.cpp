@@ -102,7 +102,7 @@ void LineGuesses::add_for_x(std::vector<Guess>& guesses) const {
   add(Guess::Kind::round_x, x, dx);
   add(Guess::Kind::round_y, y, dy);
   add(Guess::Kind::diagonal, x - y, dx - dy);
-  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+  std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return a.part * b.whole < b.part * a.whole;
   });
   for (const Crossing& crossing : crossings) guesses.push_back(crossing.guess);

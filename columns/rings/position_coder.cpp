@@ -21,9 +21,10 @@ constexpr std::array<std::int64_t, kMostUnits + 1> kUnits{1, 10, 100, 1000, 10'0
 
 void PositionCoder::Known::add(std::int64_t number) {
   if (numbers.size() == kMostKnown) return;
-  if (index_of.try_emplace(number, static_cast<std::uint32_t>(numbers.size())).second) {
-    numbers.push_back(number);
-  }
+  std::uint32_t& index = index_of[number];
+  if (index_of.size() == numbers.size()) return;
+  index = static_cast<std::uint32_t>(numbers.size());
+  numbers.push_back(number);
 }
 
 Hash PositionCoder::place_of(const Position& position) {
@@ -37,10 +38,10 @@ Hash PositionCoder::place_of(const Position& position) {
 
 /// What is known of a place with x and y of a position; null if it is new.
 const PositionCoder::Seen* PositionCoder::find_seen(const List& list, const Position& position) {
-  const auto found = list.seen.find(place_of(position));
-  const bool is_there = found != list.seen.end() && found->second.position[0] == position[0] &&
-                        found->second.position[1] == position[1];
-  return is_there ? &found->second : nullptr;
+  const Seen* const found = list.seen.find(place_of(position));
+  const bool is_there =
+      found != nullptr && found->position[0] == position[0] && found->position[1] == position[1];
+  return is_there ? found : nullptr;
 }
 
 /// Walls that two buildings share have two lines with the same positions.
@@ -59,15 +60,17 @@ void PositionCoder::guess_again(const List& list, std::uint32_t axis, std::vecto
     guesses.push_back({Guess::Kind::again, neighbour[axis]});
   }
   if (axis == 0) return;
-  const auto found = list.y_of.find(list.position[0]);
-  if (found != list.y_of.end()) guesses.push_back({Guess::Kind::again, found->second});
+  const std::int64_t* const y = list.y_of.find(list.position[0]);
+  if (y != nullptr) guesses.push_back({Guess::Kind::again, *y});
 }
 
 /// Takes the position, and the one before it as its neighbour.
 void PositionCoder::remember(List& list) {
   if (std::max(list.seen.size(), list.y_of.size()) >= kMostSeen) return;
   const auto add = [&](const Position& position, const Position& neighbour) {
-    Seen& seen = list.seen.try_emplace(place_of(position), Seen{position, {}}).first->second;
+    const std::size_t before = list.seen.size();
+    Seen& seen = list.seen[place_of(position)];
+    if (list.seen.size() > before) seen.position = position;
     if (seen.position != position || seen.neighbours.size() == kMostNeighbours) return;
     auto& known = seen.neighbours;
     if (std::find(known.begin(), known.end(), neighbour) == known.end()) known.push_back(neighbour);
@@ -138,10 +141,9 @@ std::optional<std::int64_t> PositionCoder::code_known(EntropyStream& stream, Con
   if (known.numbers.empty()) return std::nullopt;
   std::optional<std::uint32_t> index;
   if (!stream.is_reading()) {
-    const auto found = known.index_of.find(number);
-    if (found != known.index_of.end() &&
-        std::bit_width(found->second) < std::bit_width(magnitude(residual))) {
-      index = found->second;
+    const std::uint32_t* const found = known.index_of.find(number);
+    if (found != nullptr && std::bit_width(*found) < std::bit_width(magnitude(residual))) {
+      index = *found;
     }
   }
   if (!mixer.flag(stream, Question::is_known_coordinate,
@@ -236,9 +238,16 @@ void PositionCoder::take(List& list, std::uint32_t axes) {
   list.kinds.fill(Guess::Kind::none);
 }
 
+PositionCoder::List& PositionCoder::list_at(Hash path) {
+  const std::uint32_t* const known = list_of_.find(path);
+  if (known != nullptr) return lists_[*known];
+  list_of_[path] = static_cast<std::uint32_t>(lists_.size());
+  return lists_.emplace_back();
+}
+
 std::optional<std::string> PositionCoder::code(EntropyStream& stream, ContextMixer& mixer,
                                                const Place& place, std::string_view text) {
-  List& list = lists_[place.path];
+  List& list = list_at(place.path);
   const std::uint32_t axis = place.index % place.axes;
   if (axis == 0) begin(list, place);
   list.next_axis = axis;

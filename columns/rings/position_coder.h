@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "columns/flat_map.h"
 #include "columns/models/context_mixer.h"
 #include "columns/models/number_coder.h"
 #include "columns/place.h"
@@ -33,7 +33,7 @@ class PositionCoder {
   /// The different coordinates of an axis, while they are few.
   struct Known {
     std::vector<std::int64_t> numbers;
-    std::unordered_map<std::int64_t, std::uint32_t> index_of;
+    FlatMap<std::int64_t, std::uint32_t> index_of;
     std::uint32_t last_index = 0;
     void add(std::int64_t number);
   };
@@ -44,8 +44,8 @@ class PositionCoder {
   };
   /// The lists at a path.
   struct List {
-    std::unordered_map<Hash, Seen> seen;                  // by a hash of x and y
-    std::unordered_map<std::int64_t, std::int64_t> y_of;  // the last y after an x
+    FlatMap<Hash, Seen> seen;                  // by a hash of x and y
+    FlatMap<std::int64_t, std::int64_t> y_of;  // the last y after an x
     std::array<Known, kMostAxes> known;
     std::array<NumberColumn, kMostAxes> forms;
     std::array<int, kMostAxes> decimals{};
@@ -76,7 +76,10 @@ class PositionCoder {
   static void remember(List& list);
   static void take(List& list, std::uint32_t axes);
 
-  std::unordered_map<Hash, List> lists_;  // by path
+  List& list_at(Hash path);
+
+  FlatMap<Hash, std::uint32_t> list_of_;  // the number of a list, by path
+  std::vector<List> lists_;               // by number
   std::vector<Guess> guesses_;
 };
 

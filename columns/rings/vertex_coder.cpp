@@ -99,6 +99,7 @@ void VertexCoder::look_around() {
   around_.nearest = kNone;
   around_.neighbours.clear();
   around_.parallelogram.fill(kNone);
+  equal_.clear();
   const CornerList* const corners = corners_of_.find(static_cast<VertexNumber>(next_));
   if (corners == nullptr) return;
   std::uint32_t next_corner = corners->first;
@@ -114,6 +115,7 @@ void VertexCoder::look_around() {
     }
     find_parallelogram(ring, corner);
   }
+  equal_ = around_.neighbours;
 }
 
 std::int64_t VertexCoder::value(std::uint32_t place, std::size_t axis, int decimals) const {
@@ -145,7 +147,6 @@ std::array<std::int64_t, VertexCoder::kPredictions> VertexCoder::predictions(std
 
 std::optional<std::int64_t> VertexCoder::code_equal(EntropyStream& stream, ContextMixer& mixer,
                                                     std::int64_t number, int decimals) {
-  if (axis_ == 0) equal_ = around_.neighbours;
   // Those that had the coordinates before come first.
   std::vector<std::uint32_t> candidates = equal_;
   const std::size_t preferred = axis_ == 0 ? 0 : candidates.size();
@@ -208,9 +209,8 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
   if (!form.is_decimal()) {
     const std::int64_t number =
         column.code_number(stream, mixer, hash_of(21, axis), 0, std::nullopt, given.number);
-    vertex_[axis_] = {};
-    axis_ = (axis_ + 1) % 3;
-    return print(form, number);
+    equal_.clear();
+    return take(stream, form, number, {});
   }
   const auto predicted = predictions(axis_, form.decimals);
   const std::size_t best = best_of(misses_[axis_]);
@@ -235,14 +235,21 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
     judge(misses_[axis_], predicted, number, kMemory);
     last_residual_[axis_] = length * 2 + (is_negative ? 1 : 0);
   }
-  vertex_[axis_] = {number, form.decimals};
+  return take(stream, form, number, {number, form.decimals});
+}
+
+std::string VertexCoder::take(EntropyStream& stream, const NumberForm& form, std::int64_t number,
+                              const Coordinate& coordinate) {
+  vertex_[axis_] = coordinate;
   if (++axis_ == 3) {
     axis_ = 0;
     place_of_[static_cast<VertexNumber>(next_++)] = static_cast<std::uint32_t>(vertices_.size());
     vertices_.push_back(vertex_);
     last_vertex_ = vertex_;
   }
-  return print(form, number);
+  std::string printed = print(form, number);
+  if (printed.empty()) stream.fail();
+  return printed;
 }
 
 }  // namespace watertight::columns

@@ -62,6 +62,9 @@ class VertexCoder {
   /// Codes whether a coordinate is that of a neighbour; none if it is not.
   std::optional<std::int64_t> code_equal(EntropyStream& stream, ContextMixer& mixer,
                                          std::int64_t number, int decimals);
+  /// Takes the next coordinate, of which `coordinate` is kept; returns its text.
+  std::string take(EntropyStream& stream, const NumberForm& form, std::int64_t number,
+                   const Coordinate& coordinate);
   void find_parallelogram(std::span<const VertexNumber> ring, const Corner& corner);
   /// The place of a vertex in `vertices_`, or kNone.
   std::uint32_t place_of(VertexNumber vertex) const;

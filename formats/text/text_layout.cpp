@@ -247,6 +247,17 @@ bool describe_tokens(std::string_view plain, std::string_view text, ExceptionWri
   }
 }
 
+/// False only if no byte of a gap stands outside the strings of a text. Such a text without
+/// exceptions is the text itself.
+bool may_have_gaps(std::string_view text) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (is_in(kIsBlank, text[at])) return true;
+    if (text[at] != '"') continue;
+    for (++at; at < text.size() && text[at] != '"'; ++at) at += text[at] == '\\' ? 1 : 0;
+  }
+  return false;
+}
+
 Error does_not_fit() { return Error{ErrorCode::malformed, "layout and document do not fit"}; }
 
 /// The text of a layout of tokens. Errors: malformed; `too_long` beyond `size` bytes.
@@ -256,6 +267,9 @@ Result<std::string> apply_to_tokens(std::string_view plain, ByteReader& reader, 
   if (reader.failed() || gap_bytes > reader.remaining()) return does_not_fit();
   ExceptionReader gaps(reader.take(static_cast<std::size_t>(gap_bytes)));
   ExceptionReader spellings(reader.take(reader.remaining()));
+  if (gaps.is_finished() && spellings.is_finished() && !may_have_gaps(plain)) {
+    return plain.size() > size ? Result<std::string>(too_long) : std::string(plain);
+  }
   Tokens tokens(plain);
   Predictor predictor;
   std::string text;

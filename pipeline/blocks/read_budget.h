@@ -37,6 +37,17 @@ class ReadBudget {
   void start_anew() { texts_ = vertices_ = items_ = 0; }
   const Limits& limits() const { return limits_; }
 
+  /// Takes what `later`, a copy of `start`, has taken since it was copied. False, and nothing is
+  /// taken, if that is more than may still come.
+  bool take_since(const ReadBudget& start, const ReadBudget& later) {
+    ReadBudget taken = *this;
+    const bool fits = taken.take_text(later.texts_ - start.texts_) &&
+                      taken.take_vertices(later.vertices_ - start.vertices_) &&
+                      taken.take_items(later.items_ - start.items_);
+    if (fits) *this = taken;
+    return fits;
+  }
+
  private:
   static std::uint64_t left(std::uint64_t most, std::uint64_t used) {
     return most > used ? most - used : 0;

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "geometry/parallel.h"
 #include "pipeline/stored/feature_facts.h"
 
 namespace watertight::pipeline {
@@ -186,7 +187,7 @@ Status ContainerFile::read_documents() {
   auto block = read(0);
   if (!block) return std::move(block).error();
   documents_ = block->documents;
-  first_ = *std::move(block);
+  ahead_.emplace(0, *std::move(block));
   return Done{};
 }
 
@@ -260,9 +261,36 @@ Status ContainerFile::check_block(std::uint64_t number, const BlockEntry& entry,
   return Done{};
 }
 
+void ContainerFile::read_ahead(std::uint64_t first, unsigned threads) {
+  if (ranges_.bytes_read() < ranges_.size()) return;  // what it may claim grows with what is read
+  std::vector<std::uint64_t> numbers;
+  std::vector<ByteView> payloads;
+  for (std::uint64_t number = first; number < std::min(first + threads, blocks_); ++number) {
+    if (ahead_.contains(number)) continue;
+    const auto place = entry(number);
+    if (!place) break;
+    const auto found = record(place->extent, RecordKind::block);
+    if (!found) break;
+    numbers.push_back(number);
+    payloads.push_back(found->payload);
+  }
+  const ReadBudget start = budget_;
+  std::vector<ReadBudget> budgets(numbers.size(), start);
+  std::vector<std::optional<Result<ReadBlock>>> blocks(numbers.size());
+  geometry::for_each_piece(numbers.size(), threads, [&](std::size_t i, bool /*is_caller*/) {
+    blocks[i].emplace(read_block(payloads[i], documents_, budgets[i]));
+  });
+  // A block that fails, or does not fit beside those before it, is read again when it is asked for:
+  // so the error does not depend on the number of threads.
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!*blocks[i] || !budget_.take_since(start, budgets[i])) return;
+    ahead_.emplace(numbers[i], **std::move(blocks[i]));
+  }
+}
+
 Result<ReadBlock> ContainerFile::block(std::uint64_t number) {
-  auto read_now = number == 0 && first_ ? Result<ReadBlock>(*std::exchange(first_, std::nullopt))
-                                        : read(number);
+  auto ahead = ahead_.extract(number);
+  auto read_now = ahead ? Result<ReadBlock>(std::move(ahead.mapped())) : read(number);
   if (!read_now) return read_now;
   ReadBlock block = *std::move(read_now);
   const auto place = entry(number);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -56,6 +57,10 @@ class ContainerFile {
   /// block_count(). Errors: those of read_block(); malformed if the index says otherwise; those of
   /// the callback.
   Result<ReadBlock> block(std::uint64_t block);
+  /// Reads blocks from `first` on, one on each of `threads` threads, for the calls of block() that
+  /// follow. These report what is wrong, as if nothing had been read ahead. Reads nothing of a file
+  /// that is not in memory. Memory: `threads` blocks, each within what the file may still claim.
+  void read_ahead(std::uint64_t first, unsigned threads);
 
   /// The blocks that may have one of these ids, of features or of city objects; all blocks in a
   /// file without an index. Ascending. The blocks are fetched. What was claimed by blocks that were
@@ -104,7 +109,7 @@ class ContainerFile {
   std::vector<std::uint64_t> first_blocks_;  // of each page
   std::vector<std::optional<std::vector<BlockEntry>>> pages_;
   std::vector<BlockDocument> documents_;
-  std::optional<ReadBlock> first_;  // the first block, if it was read for the documents
+  std::map<std::uint64_t, ReadBlock> ahead_;  // blocks that were read before they were asked for
   std::set<DeletedFeature> deleted_;
   std::vector<Asked> asked_;  // entries of ids that led to a block, for check_block()
 };

@@ -18,7 +18,20 @@ using columns::TextKind;
 
 constexpr std::uint64_t kMostBytes = 100'000;
 
+/// Packed examples, from which a coder learns, or an Error.
+void learn_from(ByteView bytes) {
+  const auto examples = columns::Examples::of(bytes, kMostBytes);
+  if (!examples) {
+    fuzz::require(!examples.error().message.empty());
+    return;
+  }
+  const Bytes packed = (*examples)->pack({TextKind::json, as_text(bytes)});
+  const auto back = (*examples)->unpack(packed, bytes.size());
+  fuzz::require(back.has_value() && *back == as_text(bytes));
+}
+
 void read_as_packed(ByteView bytes) {
+  learn_from(bytes);
   const auto texts = columns::unpack_texts(bytes, kMostBytes);
   if (!texts) {
     fuzz::require(!texts.error().message.empty());

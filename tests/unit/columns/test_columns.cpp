@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch_test_macros.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -348,7 +349,7 @@ TEST_CASE("texts that repeat and have no columns take what a general compressor 
 TEST_CASE("a plain text that is cut, longer than allowed or damaged is an error or another text") {
   const std::string text = repeated_lists();
   const Bytes packed = columns::pack_texts(lines_of(text, TextKind::json));
-  REQUIRE(packed[0] % 2 == 1);
+  REQUIRE(packed[0] % 4 == 1);
   for (std::size_t size = 0; size < packed.size(); ++size)
     CHECK_FALSE(columns::unpack_texts(ByteView(packed).first(size), 1'000'000));
   Bytes longer = packed;
@@ -369,6 +370,21 @@ TEST_CASE("a long list of numbers in XML is taken apart in time that grows with 
   std::string text = "<posList>";
   for (int i = 0; i < 300'000; ++i) text += std::to_string(random() % 10) + ' ';
   check_round_trip({{TextKind::xml, text + "</posList>"}});
+}
+
+/// The seconds that it takes to pack and read positions whose x are multiples of a number.
+double seconds_for_multiples(std::int64_t number) {
+  std::string text = "<l><p>0 0 0 1 1 1</p><p>";
+  for (std::int64_t i = 0; i < 70'000; ++i) text += std::to_string(number * i) + " 0 0 ";
+  const auto begin = std::chrono::steady_clock::now();
+  check_round_trip({{TextKind::xml, text + "</p></l>"}});
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+TEST_CASE(
+    "coordinates that a usual hash table would put into one place take no longer than others") {
+  constexpr std::int64_t kBuckets = 85'229;
+  CHECK(seconds_for_multiples(kBuckets) < 1 + 10 * seconds_for_multiples(kBuckets + 1));
 }
 
 TEST_CASE("damaged bytes give an error or other texts, in bounds") {
@@ -393,9 +409,9 @@ TEST_CASE("more texts than bytes can stand for are refused") {
     for (int i = 0; i < 8; ++i) writer.u8(0);
     return std::move(writer).bytes();
   };
-  for (const std::uint64_t count : {std::uint64_t{1} << 20U, std::uint64_t{1} << 62U}) {
-    CHECK_FALSE(columns::unpack_texts(count_of(2 * count), kNoLimit));
-    CHECK_FALSE(columns::unpack_texts(count_of(2 * count + 1), kNoLimit));
+  for (const std::uint64_t count : {std::uint64_t{1} << 20U, std::uint64_t{1} << 61U}) {
+    CHECK_FALSE(columns::unpack_texts(count_of(4 * count), kNoLimit));
+    CHECK_FALSE(columns::unpack_texts(count_of(4 * count + 1), kNoLimit));
   }
   check_round_trip(std::vector<Text>(200'000));
 }
@@ -454,6 +470,12 @@ TEST_CASE("coordinates with an exponent are predicted as others are") {
 }
 
 }  // namespace
+std::shared_ptr<const columns::Examples> examples_of(const std::vector<Text>& texts) {
+  auto examples = columns::Examples::of(columns::Examples::pack_examples(texts), 1'000'000);
+  REQUIRE(examples);
+  return *examples;
+}
+
 TEST_CASE(
     "a text like the examples takes few bytes, and each is packed as if it were the only one") {
   const auto text_of = [](int number) {
@@ -464,8 +486,8 @@ TEST_CASE(
   for (int i = 0; i < 12; ++i) texts.push_back(text_of(i * 37));
   std::vector<columns::Text> views;
   for (const std::string& text : texts) views.push_back({columns::TextKind::json, text});
-  const auto examples = columns::Examples::of(views);
-  const auto none = columns::Examples::of({});
+  const auto examples = examples_of(views);
+  const auto none = examples_of({});
   const std::string text = text_of(1234);
   const Bytes packed = examples->pack({columns::TextKind::json, text});
   CHECK(packed.size() < 6);

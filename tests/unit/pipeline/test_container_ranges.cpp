@@ -429,6 +429,56 @@ TEST_CASE("changed bytes of index and commit under the right checksum are read o
   }
 }
 
+TEST_CASE("blocks that are read at once give the document of blocks read in turn") {
+  for (const unsigned threads : {2U, 3U, 64U}) {
+    auto opened = ContainerFile::open(town_file(), {});
+    REQUIRE(opened);
+    const auto documents = pipeline::decode_container(*opened, {}, threads);
+    REQUIRE(documents);
+    CHECK(text_of(documents->front()) == samples::sequence(town()));
+  }
+}
+
+TEST_CASE("blocks that are read at once give the first error of blocks read in turn") {
+  const pipeline::Walk walk = pipeline::walk_records(town_file());
+  for (const std::size_t changed_one : {1U, 4U, 9U}) {
+    ByteWriter writer;
+    writer.append(pipeline::file_head());
+    for (std::size_t record = 0; record < walk.records.size(); ++record) {
+      const ByteView payload = walk.records[record].payload;
+      Bytes bytes(payload.begin(), payload.end());
+      if (record == changed_one || record == changed_one + 2) bytes[bytes.size() / 2] ^= 0x41U;
+      writer.append(pipeline::write_record(walk.records[record].kind, bytes));
+    }
+    const auto error_of = [&writer](unsigned threads) {
+      auto opened = ContainerFile::open(writer.bytes(), {});
+      if (!opened) return opened.error();
+      const auto documents = pipeline::decode_container(*opened, {}, threads);
+      return documents ? Error{} : documents.error();
+    };
+    const Error in_turn = error_of(1);
+    CHECK_FALSE(in_turn.message.empty());
+    const Error at_once = error_of(4);
+    CHECK(at_once.message == in_turn.message);
+    CHECK(at_once.byte_offset == in_turn.byte_offset);
+  }
+}
+
+TEST_CASE("what a copy of a budget took is taken whole or not at all") {
+  Limits limits;
+  limits.expanded = 1000;
+  pipeline::ReadBudget budget(limits);
+  REQUIRE(budget.take_text(100));
+  const pipeline::ReadBudget start = budget;
+  pipeline::ReadBudget first = start;
+  pipeline::ReadBudget second = start;
+  REQUIRE(first.take_text(500));
+  REQUIRE(second.take_text(500));
+  CHECK(budget.take_since(start, first));
+  CHECK_FALSE(budget.take_since(start, second));
+  CHECK(budget.texts_left() == 400);
+}
+
 TEST_CASE("ranges that are near each other are read together") {
   using pipeline::joined_ranges;
   CHECK(joined_ranges({}, 4).empty());

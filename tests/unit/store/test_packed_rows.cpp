@@ -122,6 +122,19 @@ TEST_CASE("a dictionary makes texts smaller, and they come back with it alone") 
   CHECK(*packing::best_dictionary(texts(5, 0), 1000) == nullptr);
 }
 
+TEST_CASE("a dictionary of a form that is not known is refused as of a newer program") {
+  const auto dictionary = packing::best_dictionary(texts(200, 0), 1000);
+  REQUIRE((dictionary && *dictionary));
+  Bytes content = (*dictionary)->content();
+  REQUIRE(packing::TextDictionary::of(content));
+  content[0] = 1;
+  const auto refused = packing::TextDictionary::of(content);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::unsupported);
+  CHECK(refused.error().message == "texts of form 1 are not known: a newer program wrote them");
+  CHECK(packing::TextDictionary::of({}).error().code == ErrorCode::malformed);
+}
+
 TEST_CASE("a collection keeps the dictionaries of its features, also when it is made anew") {
   const Database database;
   const auto store = database.store();

@@ -262,7 +262,8 @@ Status ContainerFile::check_block(std::uint64_t number, const BlockEntry& entry,
 }
 
 void ContainerFile::read_ahead(std::uint64_t first, unsigned threads) {
-  if (ranges_.bytes_read() < ranges_.size()) return;  // what it may claim grows with what is read
+  // Else what it may claim grows with what is read, and the payloads do not stay.
+  if (!ranges_.has_all()) return;
   std::vector<std::uint64_t> numbers;
   std::vector<ByteView> payloads;
   for (std::uint64_t number = first; number < std::min(first + threads, blocks_); ++number) {

@@ -439,6 +439,20 @@ TEST_CASE("blocks that are read at once give the document of blocks read in turn
   }
 }
 
+TEST_CASE("blocks are read at once only from a file that is in memory") {
+  // What is read twice makes more bytes than the file has, but does not stay.
+  Served served{town_file(), {}};
+  auto file = ContainerFile::open(served.file(), {});
+  REQUIRE(file);
+  for (int round = 0; round < 3; ++round) {
+    for (std::uint64_t i = 0; i < file->block_count(); ++i) REQUIRE(file->block(i));
+  }
+  REQUIRE(file->bytes_read() > file->size());
+  const std::size_t before = served.requests.size();
+  file->read_ahead(0, 4);
+  CHECK(served.requests.size() == before);
+}
+
 TEST_CASE("blocks that are read at once give the first error of blocks read in turn") {
   const pipeline::Walk walk = pipeline::walk_records(town_file());
   for (const std::size_t changed_one : {1U, 4U, 9U}) {

@@ -64,7 +64,9 @@ Mark MarkCoder::code(EntropyStream& stream, ContextMixer& mixer, StringCoder& st
   if (!coded) {
     if (mixer.flag(stream, Question::is_new_mark, {place.path, hash_of(place.path, last_)},
                    !known)) {
-      coded = marks_.add(strings.code(stream, mixer, kMarkColumn, whole, most_bytes));
+      // A mark as it is kept has a byte more than its text.
+      const std::size_t most = std::max(most_bytes, most_bytes + 1);
+      coded = marks_.add(strings.code(stream, mixer, kMarkColumn, whole, most));
     } else {
       coded = static_cast<std::uint32_t>(std::min<std::uint64_t>(
           mixer.number(stream, Question::mark_index, {place.path, hash_of(place.path, last_)},

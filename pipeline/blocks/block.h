@@ -41,11 +41,17 @@ struct BlockContents {
 /// features have, which costs no encoding.
 enum class SolidLayout : std::uint8_t { pages, blobs };
 
-/// The bytes of a block. `documents` are those of the file, up to the last that a feature of the
+struct WrittenBlock {
+  Bytes payload;
+  std::uint64_t text_bytes = 0;  // of its texts, before they were packed
+};
+
+/// A block. `documents` are those of the file, up to the last that a feature of the
 /// block names; without documents of its own the block is read with them. Solids with Steiner
 /// vertices stay blobs. Errors: malformed (a blob is damaged); limit_exceeded; not_encodable.
-Result<Bytes> write_block(const BlockContents& contents, std::span<const BlockDocument> documents,
-                          const EncodeOptions& pages, SolidLayout layout);
+Result<WrittenBlock> write_block(const BlockContents& contents,
+                                 std::span<const BlockDocument> documents,
+                                 const EncodeOptions& pages, SolidLayout layout);
 
 /// A feature as a block has it.
 struct ReadFeature {

@@ -148,10 +148,15 @@ class TextList {
     add(TextKind::json, std::string(parts.skeleton));
     if (parts.layout) add(TextKind::bytes, std::string(*parts.layout));
   }
-  Bytes pack() const {
+  PackedTexts pack() const {
+    PackedTexts packed;
     std::vector<Text> views;
-    for (const auto& [kind, text] : texts_) views.push_back({kind, text});
-    return columns::pack_texts(views);
+    for (const auto& [kind, text] : texts_) {
+      views.push_back({kind, text});
+      packed.text_bytes += text.size();
+    }
+    packed.bytes = columns::pack_texts(views);
+    return packed;
   }
 
  private:
@@ -277,7 +282,8 @@ class BlockBuilder {
 
 }  // namespace
 
-Bytes pack_block_texts(const BlockContents& contents, std::span<const std::uint64_t> blob_bytes) {
+PackedTexts pack_block_texts(const BlockContents& contents,
+                             std::span<const std::uint64_t> blob_bytes) {
   TextList texts;
   TableWriter documents(kDocuments);
   documents.cell(contents.documents.size());

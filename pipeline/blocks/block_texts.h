@@ -20,10 +20,16 @@ inline constexpr std::uint64_t kNoBlob = 1;
 /// Its lattice is that of the decimals of all such solids of the feature.
 inline constexpr std::uint64_t kOnBlockGrid = 2;
 
+struct PackedTexts {
+  Bytes bytes;
+  std::uint64_t text_bytes = 0;  // before they were packed
+};
+
 /// Packs the texts of a block. `blob_bytes` has, for each solid of the features, the bytes of its
 /// blob: 0 for one in the page file, or one of the constants above. Of a report the codes of
 /// the errors are kept. Cost: pack_texts().
-Bytes pack_block_texts(const BlockContents& contents, std::span<const std::uint64_t> blob_bytes);
+PackedTexts pack_block_texts(const BlockContents& contents,
+                             std::span<const std::uint64_t> blob_bytes);
 
 struct BlockTexts {
   ReadBlock block;                        // without solids

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The bound on what the blocks of one Watertight file may claim: in proportion to the bytes of it
-// that were read, so that a small file cannot ask for much memory.
+// that were read, so that a small file cannot ask for much memory. A writer keeps to it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "base/limits.h"
@@ -24,11 +25,16 @@ class ReadBudget {
   bool take_vertices(std::uint64_t count) {
     return take(count, left(limits_.claimed_by(bytes_), vertices_), vertices_);
   }
+  static constexpr std::uint64_t kFreeItems = 65'536;
+  static constexpr std::uint64_t kItemsPerByte = 4;
+
   /// Documents, features and solids. Texts may be compressed a thousandfold, so the bytes of the
   /// file bound the number of their items.
   bool take_items(std::uint64_t count) {
     return take(count, left(kFreeItems + kItemsPerByte * bytes_, items_), items_);
   }
+  /// Forgets what was claimed: it is not in memory any more, or the caller's.
+  void start_anew() { texts_ = vertices_ = items_ = 0; }
   const Limits& limits() const { return limits_; }
 
   /// Takes what `later`, a copy of `start`, has taken since it was copied. False, and nothing is
@@ -43,9 +49,6 @@ class ReadBudget {
   }
 
  private:
-  static constexpr std::uint64_t kFreeItems = 65'536;
-  static constexpr std::uint64_t kItemsPerByte = 4;
-
   static std::uint64_t left(std::uint64_t most, std::uint64_t used) {
     return most > used ? most - used : 0;
   }
@@ -59,6 +62,26 @@ class ReadBudget {
   std::uint64_t bytes_ = 0;
   std::uint64_t texts_ = 0;
   std::uint64_t vertices_ = 0;
+  std::uint64_t items_ = 0;
+};
+
+/// What a writer keeps to, so that readers with the usual limits take its file: as a whole, and each
+/// part of it. So what a block claims beyond its own bytes counts, whatever others leave.
+class WriteBudget {
+ public:
+  /// Takes a block or a record of documents; false if no reader would.
+  bool take(std::uint64_t bytes, std::uint64_t texts, std::uint64_t items) {
+    const Limits limits;
+    texts_ += beyond(texts, limits.expanded_from(bytes) - limits.expanded);
+    items_ += beyond(items, ReadBudget::kItemsPerByte * bytes);
+    return texts_ <= limits.expanded && items_ <= ReadBudget::kFreeItems;
+  }
+
+ private:
+  static std::uint64_t beyond(std::uint64_t claimed, std::uint64_t allowed) {
+    return std::max(claimed, allowed) - allowed;
+  }
+  std::uint64_t texts_ = 0;
   std::uint64_t items_ = 0;
 };
 

@@ -179,14 +179,15 @@ Result<Paged> smallest_pages(const BlockContents& contents, const EncodeOptions&
 
 }  // namespace
 
-Result<Bytes> write_block(const BlockContents& contents,
-                          std::span<const BlockDocument> /*documents*/, const EncodeOptions& pages,
-                          SolidLayout layout) {
+Result<WrittenBlock> write_block(const BlockContents& contents,
+                                 std::span<const BlockDocument> /*documents*/,
+                                 const EncodeOptions& pages, SolidLayout layout) {
   const auto paged =
       layout == SolidLayout::blobs ? as_they_are(contents) : smallest_pages(contents, pages);
   if (!paged) return paged.error();
+  const PackedTexts texts = pack_block_texts(contents, paged->forms);
   ByteWriter block;
-  write_part(block, pack_block_texts(contents, paged->forms));
+  write_part(block, texts.bytes);
   write_part(block, paged->file);
   std::size_t number = 0;
   for (const BlockFeature& feature : contents.features) {
@@ -194,7 +195,7 @@ Result<Bytes> write_block(const BlockContents& contents,
       if (paged->forms[number++] == solid.blob.size()) block.append(solid.blob);
     }
   }
-  return std::move(block).bytes();
+  return WrittenBlock{std::move(block).bytes(), texts.text_bytes};
 }
 
 }  // namespace watertight::pipeline

@@ -81,14 +81,17 @@ Result<Commit> read_commit(ByteView payload, std::uint64_t offset) {
   commit.deleted = read_extent(reader);
   is_good = is_before(commit.documents, offset) && is_before(commit.deleted, offset);
   const std::uint64_t block_pages = reader.varint();
+  std::uint64_t end = 0;  // of the page before: no two pages have the same bytes
   for (std::uint64_t i = 0; i < block_pages && is_good && !reader.failed(); ++i) {
     BlockPage& page = commit.block_pages.emplace_back();
     page.extent = read_extent(reader);
     page.blocks = reader.varint();
     const std::uint8_t has_box = reader.u8();
     if (has_box != 0) page.box = read_box(reader);
-    is_good = page.extent.size > 0 && is_before(page.extent, offset) && page.blocks > 0 &&
-              page.blocks <= page.extent.size && has_box <= 1 && (!page.box || is_box(*page.box));
+    is_good = page.extent.size > 0 && is_before(page.extent, offset) && page.extent.offset >= end &&
+              page.blocks > 0 && page.blocks <= page.extent.size && has_box <= 1 &&
+              (!page.box || is_box(*page.box));
+    if (is_good) end = page.extent.end();
   }
   const std::uint64_t id_pages = is_good ? reader.varint() : 0;
   std::uint64_t start = 0;

@@ -262,7 +262,8 @@ Status ContainerFile::check_block(std::uint64_t number, const BlockEntry& entry,
 }
 
 void ContainerFile::read_ahead(std::uint64_t first, unsigned threads) {
-  if (ranges_.bytes_read() < ranges_.size()) return;  // what it may claim grows with what is read
+  // Else what it may claim grows with what is read, and the payloads do not stay.
+  if (!ranges_.has_all()) return;
   std::vector<std::uint64_t> numbers;
   std::vector<ByteView> payloads;
   for (std::uint64_t number = first; number < std::min(first + threads, blocks_); ++number) {
@@ -341,7 +342,14 @@ Result<std::vector<IdEntry>> ContainerFile::entries_of_ids(const IdPage& page) {
   return read_id_page(found->payload, page, commit_.ids.bits, blocks_);
 }
 
+/// Begins a selection: a file that is open for long is read many times.
+void ContainerFile::start_selection() {
+  budget_.start_anew();
+  asked_.clear();
+}
+
 Result<std::vector<std::uint64_t>> ContainerFile::blocks_of(const std::vector<std::string>& ids) {
+  start_selection();
   if (!has_index()) return all_blocks();
   std::map<std::size_t, std::vector<std::uint64_t>> hashes;  // by page
   const std::vector<IdPage>& pages = commit_.ids.pages;
@@ -376,6 +384,7 @@ Result<std::vector<std::uint64_t>> ContainerFile::blocks_of(const std::vector<st
 }
 
 Result<std::vector<std::uint64_t>> ContainerFile::blocks_in(const FlatBox& box) {
+  start_selection();
   if (!has_index()) return all_blocks();
   std::vector<std::size_t> met;
   std::vector<Extent> extents;

@@ -63,7 +63,8 @@ class ContainerFile {
   void read_ahead(std::uint64_t first, unsigned threads);
 
   /// The blocks that may have one of these ids, of features or of city objects; all blocks in a
-  /// file without an index. Ascending. The blocks are fetched. Errors: those of entry().
+  /// file without an index. Ascending. The blocks are fetched. What was claimed by blocks that were
+  /// read before does not count any more. Errors: those of entry().
   Result<std::vector<std::uint64_t>> blocks_of(const std::vector<std::string>& ids);
   /// The blocks that may have features whose boxes meet a box. As blocks_of().
   Result<std::vector<std::uint64_t>> blocks_in(const FlatBox& box);
@@ -90,6 +91,7 @@ class ContainerFile {
   std::size_t page_of(std::uint64_t block) const;
   Result<std::vector<IdEntry>> entries_of_ids(const IdPage& page);
   Result<ReadBlock> read(std::uint64_t block);
+  void start_selection();
   Status check_block(std::uint64_t number, const BlockEntry& entry, const ReadBlock& block) const;
   Status fetch_blocks(const std::vector<std::uint64_t>& blocks);
   std::vector<std::uint64_t> all_blocks() const;

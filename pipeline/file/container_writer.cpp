@@ -170,9 +170,23 @@ Extent ContainerWriter::write(RecordKind kind, ByteView payload) {
   return extent;
 }
 
+/// The payload of a block that readers take.
+Result<Bytes> ContainerWriter::payload_of(const BlockContents& contents,
+                                          std::span<const BlockDocument> documents) {
+  auto block = write_block(contents, documents, options_.pages, options_.layout);
+  if (!block) return std::move(block).error();
+  std::uint64_t items = contents.documents.size() + contents.features.size();
+  for (const BlockFeature& feature : contents.features) items += feature.encoded.solids.size();
+  if (budget_.take(block->payload.size(), block->text_bytes, items)) {
+    return std::move(block->payload);
+  }
+  return Error{ErrorCode::limit_exceeded,
+               "the document becomes so small that readers would take the file for a bomb"};
+}
+
 /// Writes the open block, and notes for the index what it has.
 Status ContainerWriter::close_block() {
-  const auto payload = write_block(open_, documents_, options_.pages, options_.layout);
+  const auto payload = payload_of(open_, documents_);
   if (!payload) return payload.error();
   const Status noted = note(open_.features, write(RecordKind::block, *payload));
   if (!noted) return noted;
@@ -243,7 +257,7 @@ Status ContainerWriter::write_documents() {
   if (!has_new_documents_ && commit_.documents.size > 0) return Done{};
   BlockContents contents;
   contents.documents = documents_;
-  const auto payload = write_block(contents, {}, options_.pages, options_.layout);
+  const auto payload = payload_of(contents, {});
   if (!payload) return payload.error();
   commit_.documents = write(RecordKind::documents, *payload);
   return Done{};
@@ -253,7 +267,7 @@ Result<ContainerWriter::Rest> ContainerWriter::finish_in_parts() && {
   if (is_read_whole()) {
     open_.documents = std::exchange(documents_, {});
     if (!open_.documents.empty()) {
-      const auto payload = write_block(open_, open_.documents, options_.pages, options_.layout);
+      const auto payload = payload_of(open_, open_.documents);
       if (!payload) return payload.error();
       write(RecordKind::block, *payload);
     }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,7 +43,9 @@ class ContainerWriter {
   /// is added to gets no more features if it has a framing or is a CityJSON. Cost: logarithmic in
   /// the number of documents.
   void add_document(const std::string& format, const SharedText& header, Bytes framing = {});
-  /// Adds a feature. Features of a document keep their order. Errors: those of write_block().
+  /// Adds a feature. Features of a document keep their order. Errors: those of write_block();
+  /// limit_exceeded when readers would refuse the file for what it claims (docs/format-file.md,
+  /// "Limits").
   Status add(EncodedFeature feature);
   /// Adds a feature whose number in its document is kept; all features of a block have one, or
   /// none.
@@ -68,6 +71,7 @@ class ContainerWriter {
   bool is_full() const;
   bool is_too_much(std::size_t bytes) const;
   Status close_block();
+  Result<Bytes> payload_of(const BlockContents& contents, std::span<const BlockDocument> documents);
   Status note(const std::vector<BlockFeature>& features, const Extent& extent);
   Status take_index(ContainerFile& file);
   Status take_blocks(ContainerFile& file);
@@ -80,6 +84,7 @@ class ContainerWriter {
   ContainerOptions options_;
   std::uint64_t offset_ = 0;  // where the next byte goes in the file
   Bytes written_;
+  WriteBudget budget_;
   std::vector<BlockDocument> documents_;
   std::map<std::pair<std::string, SharedText>, std::uint64_t> numbers_;  // of the documents
   bool has_new_documents_ = false;

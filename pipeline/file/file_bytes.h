@@ -29,6 +29,8 @@ class RangeCache {
   std::uint64_t size() const { return file_.size; }
   /// The number of bytes that were read so far.
   std::uint64_t bytes_read() const { return bytes_read_; }
+  /// Whether all of the file is in memory: then what get() returns stays valid.
+  bool has_all() const { return find({0, size()}) != nullptr; }
 
   /// The bytes of an extent within the file; valid until the next call of get() or fetch(). Errors:
   /// those of the callback; unavailable if it returns another number of bytes.

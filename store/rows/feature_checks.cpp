@@ -8,14 +8,9 @@
 #include <tuple>
 
 #include "store/rows/feature_rows.h"
+#include "store/rows/packed_solids.h"
 
 namespace watertight::store {
-namespace {
-
-// A B-tree entry of PostgreSQL holds 2704 bytes; two ids and a collection name must fit together.
-constexpr std::size_t kLongestId = 1024;
-
-}  // namespace
 
 bool is_plain_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {

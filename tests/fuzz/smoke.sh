@@ -31,7 +31,7 @@ for name in "${names[@]}"; do
   options=(-max_total_time="$seconds" -max_len=32768 -timeout=600 -rss_limit_mb=2048
     -artifact_prefix="$build/corpora/$name-" -print_final_stats=1)
   case $name in
-    city_json* | skeleton | json_fg) options+=(-dict="$here/json.dict") ;;
+    city_json* | skeleton | rows | json_fg) options+=(-dict="$here/json.dict") ;;
     gml) options+=(-dict="$here/xml.dict") ;;
   esac
   result=clean

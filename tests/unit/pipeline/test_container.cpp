@@ -129,6 +129,24 @@ Bytes file_of_one(std::uint64_t document, std::uint64_t blob_size, ByteView page
 
 }  // namespace
 
+TEST_CASE("a document that becomes too small to be read is refused when it is written") {
+  constexpr std::size_t kMany = std::size_t{65} << 20U;
+  pipeline::EncodedDocument document{"off", {}, {}, {}};
+  pipeline::EncodedFeature& feature = document.features.emplace_back();
+  feature.format = "off";
+  feature.skeleton.assign(kMany, ' ');
+  const auto file = pipeline::write_container(document);
+  REQUIRE_FALSE(file);
+  CHECK(file.error().code == ErrorCode::limit_exceeded);
+  const Limits limits;
+  pipeline::WriteBudget budget;
+  CHECK(budget.take(1000, limits.expanded + 100'000, 65'536 + 4000));
+  CHECK(budget.take(1'000'000, 1000, 1000));
+  pipeline::WriteBudget other = budget;
+  CHECK_FALSE(budget.take(1000, 100'001, 0));
+  CHECK_FALSE(other.take(1000, 0, 4001));
+}
+
 TEST_CASE("a file of blobs keeps the bytes of each blob, and returns the same document") {
   const std::string text = row_of_boxes(20);
   const pipeline::EncodedDocument document = encoded(text);

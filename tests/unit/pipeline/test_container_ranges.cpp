@@ -178,6 +178,23 @@ TEST_CASE("a feature is found by its id in four requests, with its line as it wa
   CHECK(served.total() < 64U << 10U);
 }
 
+TEST_CASE("an open file is read as often as one likes") {
+  Limits limits;
+  limits.expanded = 100'000;  // so that few reads claim more than all bytes of the file may
+  limits.claimed = 1000;
+  const Bytes file =
+      changed(*pipeline::write_container(encoded({house(1), house(2)})), {house(3)});
+  Served served{file, {}};
+  auto opened = ContainerFile::open(served.file(), limits);
+  REQUIRE(opened);
+  const store::StoredBox box{{0, 0, -10}, {1000, 1000, 10}};
+  for (int i = 0; i < 1000; ++i) {
+    REQUIRE(pipeline::select_ids(*opened, {id_of(1 + i % 3)}, limits));
+    REQUIRE(pipeline::select_box(*opened, box, limits));
+  }
+  CHECK(served.total() < 2 * file.size());
+}
+
 TEST_CASE("every id is found, and no other") {
   Served served{town_file(), {}};
   auto file = ContainerFile::open(served.file(), {});
@@ -367,6 +384,7 @@ TEST_CASE("an index that lies gives an error with its place") {
   other = commit;
   other.block_pages.push_back(other.block_pages[0]);  // a page twice
   CHECK_FALSE(pipeline::decode_container(rebuilt(other)));
+  CHECK(is_refused(rebuilt(other), id_of(5)));  // many such pages would take memory for each
   // Ids that lead to the wrong block.
   const std::uint64_t blocks = opened->block_count();
   auto ids = opened->id_entries();
@@ -419,6 +437,20 @@ TEST_CASE("blocks that are read at once give the document of blocks read in turn
     REQUIRE(documents);
     CHECK(text_of(documents->front()) == samples::sequence(town()));
   }
+}
+
+TEST_CASE("blocks are read at once only from a file that is in memory") {
+  // Ranges that are read twice count as more bytes than the file has, but do not stay.
+  Served served{town_file(), {}};
+  auto file = ContainerFile::open(served.file(), {});
+  REQUIRE(file);
+  for (int round = 0; round < 3; ++round) {
+    for (std::uint64_t i = 0; i < file->block_count(); ++i) REQUIRE(file->block(i));
+  }
+  REQUIRE(file->bytes_read() > file->size());
+  const std::size_t before = served.requests.size();
+  file->read_ahead(0, 4);
+  CHECK(served.requests.size() == before);
 }
 
 TEST_CASE("blocks that are read at once give the first error of blocks read in turn") {

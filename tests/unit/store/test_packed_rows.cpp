@@ -95,6 +95,16 @@ TEST_CASE("a page of solids comes back behind their facts and blobs") {
   check_unpacked(all, packed);
 }
 
+TEST_CASE("solids take memory by their bytes, also where many have one id") {
+  const std::size_t longest = store::kLongestId;
+  for (const std::size_t size : {longest, longest + 1}) {
+    auto many = feature_with({solid_of(std::string(size, 'x'), 0, "1", 0)});
+    many.solids.resize(100, many.solids.front());
+    const auto back = store::unpack_solids(many.id, 100, store::pack_solids(many));
+    CHECK(back.has_value() == (size <= longest));
+  }
+}
+
 TEST_CASE("SQL sees the same solids as the store") {
   const Database database;
   const auto store = database.store();

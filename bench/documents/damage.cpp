@@ -262,10 +262,9 @@ class Siege {
       if (dictionary) feature.skeleton.dictionary = *dictionary;
     }
     size = solids.size() + feature.skeleton.bytes.size();
-    auto unpacked = store::unpack_solids(row.id, row.number, solids);
+    const auto unpacked = store::unpack_solids(feature, row.number, solids);
     count("solids of a row", unpacked);
     if (!unpacked) return;
-    feature.solids = *std::move(unpacked);
     auto whole = pipeline::unpack(feature, {.bytes = kMostText});
     count("text of a row", whole);
     if (!whole) return;

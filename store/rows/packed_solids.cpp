@@ -123,17 +123,12 @@ Status unpack_solids(FeatureRecord& feature, std::uint64_t number, ByteView pack
   const bool has_page = !packed.empty() && packed.front() == kPageMark;
   ByteReader reader(packed.subspan(has_page ? 1 : 0));
   std::vector<Facts> all;
-<<<<<<< HEAD
-  for (std::uint64_t i = 0; i < number && !reader.failed(); ++i) {
-    all.push_back(read_facts(reader, feature.id, all.empty() ? nullptr : &all.back()));
-=======
   // The id of one solid may be that of many: without its limit, memory would grow with the square
   // of the bytes.
   bool is_good = true;
   for (std::uint64_t i = 0; i < number && is_good; ++i) {
-    all.push_back(read_facts(reader, id, all.empty() ? nullptr : &all.back()));
+    all.push_back(read_facts(reader, feature.id, all.empty() ? nullptr : &all.back()));
     is_good = !reader.failed() && all.back().solid.object_id.size() <= kLongestId;
->>>>>>> hostile
   }
   feature.solids.clear();
   for (Facts& facts : all) {
@@ -141,13 +136,9 @@ Status unpack_solids(FeatureRecord& feature, std::uint64_t number, ByteView pack
     facts.solid.blob.assign(blob.begin(), blob.end());
     feature.solids.push_back(std::move(facts.solid));
   }
-<<<<<<< HEAD
   const ByteView page = has_page ? reader.take(reader.remaining()) : ByteView();
   feature.page.assign(page.begin(), page.end());
-  if (reader.failed() || reader.remaining() > 0 || has_page == page.empty()) {
-=======
-  if (!is_good || reader.failed() || reader.remaining() > 0) {
->>>>>>> hostile
+  if (!is_good || reader.failed() || reader.remaining() > 0 || has_page == page.empty()) {
     return Error{ErrorCode::malformed, "the solids of a stored feature are damaged"};
   }
   return Done{};

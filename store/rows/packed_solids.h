@@ -24,28 +24,19 @@
 
 namespace watertight::store {
 
-<<<<<<< HEAD
 /// The first byte where there is a page: a level of detail that is not in the list.
 inline constexpr std::uint8_t kPageMark = 30;
-=======
+
 /// The most bytes of the id of a feature or an object. A B-tree entry of PostgreSQL holds 2704
 /// bytes; two ids and a collection name must fit together.
 constexpr std::size_t kLongestId = 1024;
->>>>>>> hostile
 
 /// The solids of the feature without measures and reports. Cost: linear.
 Bytes pack_solids(const FeatureRecord& feature);
 
-<<<<<<< HEAD
 /// Gives a feature with an id the `number` solids, and the page, that pack_solids() was given.
-/// Memory: that of the bytes. Errors: malformed.
+/// Memory: that of the bytes, and an id for each solid. Errors: malformed; also for an id that is
+/// longer than kLongestId.
 Status unpack_solids(FeatureRecord& feature, std::uint64_t number, ByteView packed);
-=======
-/// The `number` solids that pack_solids() was given, of the feature `id`. Memory: that of the
-/// bytes, and an id for each solid. Errors: malformed; also for an id that is longer than
-/// kLongestId.
-Result<std::vector<StoredSolid>> unpack_solids(std::string_view id, std::uint64_t number,
-                                               ByteView packed);
->>>>>>> hostile
 
 }  // namespace watertight::store

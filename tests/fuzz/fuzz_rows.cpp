@@ -43,14 +43,16 @@ packing::DictionaryPointer dictionary_of(ByteView bytes) {
   return has_value_or_message(dictionary) ? *std::move(dictionary) : nullptr;
 }
 
-/// The solids of the bytes, whose number is not among them, if they are few; else none.
-std::vector<StoredSolid> solids_of(ByteView packed) {
-  for (std::uint64_t number : {1U, 2U, 3U, 100U}) {
-    auto solids = store::unpack_solids(kId, number, packed);
-    if (has_value_or_message(solids)) return *std::move(solids);
+/// Gives the row the solids of the bytes, whose number is not among them, if they are few.
+void take_solids(StoredFeature& row, ByteView packed) {
+  for (const std::uint64_t number : {1U, 2U, 3U, 100U}) {
+    if (has_value_or_message(store::unpack_solids(row, number, packed))) return;
   }
-  has_value_or_message(store::unpack_solids(kId, kMostSolids, packed));
-  return {};
+  StoredFeature other;
+  other.id = row.id;
+  has_value_or_message(store::unpack_solids(other, kMostSolids, packed));
+  row.solids.clear();
+  row.page.clear();
 }
 
 void read(const StoredFeature& row) {
@@ -72,7 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   row.format = "city-json-seq";
   row.header = std::string(kHeader);
   row.skeleton.dictionary = dictionary_of(part(reader));
-  row.solids = solids_of(part(reader));
+  take_solids(row, part(reader));
   const ByteView text = reader.take(reader.remaining());
   row.skeleton.bytes.assign(text.begin(), text.end());
   read(row);

@@ -100,7 +100,7 @@ TEST_CASE("solids take memory by their bytes, also where many have one id") {
   for (const std::size_t size : {longest, longest + 1}) {
     auto many = feature_with({solid_of(std::string(size, 'x'), 0, "1", 0)});
     many.solids.resize(100, many.solids.front());
-    FeatureRecord back;
+    store::FeatureRecord back;
     back.id = many.id;
     const auto unpacked = store::unpack_solids(back, 100, store::pack_solids(many));
     CHECK(unpacked.has_value() == (size <= longest));

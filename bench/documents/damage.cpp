@@ -91,8 +91,8 @@ Bytes with_checksums(ByteView bytes) {
     if (reader.failed()) break;
     const auto kind = static_cast<RecordKind>(head % 4);
     const Bytes record = pipeline::write_record(
-        kind, reader.take(static_cast<std::size_t>(
-                  std::min<std::uint64_t>(head / 4, reader.remaining()))));
+        kind, reader.take(
+                  static_cast<std::size_t>(std::min<std::uint64_t>(head / 4, reader.remaining()))));
     writer.append(record);
     reader.take(std::min<std::size_t>(4, reader.remaining()));
     std::size_t end = kind == RecordKind::commit ? 1 : 0;

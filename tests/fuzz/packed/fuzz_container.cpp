@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "columns/columns.h"
-#include "fuzz_formats.h"
+#include "tests/fuzz/fuzz_formats.h"
 #include "pipeline/container.h"
 #include "pipeline/file/selection.h"
 

@@ -2,7 +2,7 @@
 //
 // damage N SEED DOCUMENT...: reads N damaged Watertight files and rows of stored features, made of
 // the documents, and each prefix of the files. damage --seeds FOLDER DOCUMENT writes the rows of
-// the document for tests/fuzz/fuzz_rows.cpp instead.
+// the document for tests/fuzz/packed/fuzz_rows.cpp instead.
 //
 // A file with changed bytes must be refused, or give the very documents. A file whose records have
 // right checksums again, and a row, must be refused or give documents that are written or refused.

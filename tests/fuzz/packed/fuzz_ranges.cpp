@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "formats/document.h"
-#include "tests/fuzz/fuzz_formats.h"
 #include "pipeline/container.h"
 #include "pipeline/file/selection.h"
+#include "tests/fuzz/fuzz_formats.h"
 
 namespace {
 

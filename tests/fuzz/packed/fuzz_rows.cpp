@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "tests/fuzz/fuzz_formats.h"
 #include "packing/text_dictionary.h"
 #include "pipeline/pipeline.h"
 #include "store/rows/packed_solids.h"
+#include "tests/fuzz/fuzz_formats.h"
 
 namespace {
 

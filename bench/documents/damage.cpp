@@ -2,7 +2,7 @@
 //
 // damage N SEED DOCUMENT...: reads N damaged Watertight files and rows of stored features, made of
 // the documents, and each prefix of the files. damage --seeds FOLDER DOCUMENT writes the rows of
-// the document for tests/fuzz/fuzz_rows.cpp instead.
+// the document for tests/fuzz/packed/fuzz_rows.cpp instead.
 //
 // A file with changed bytes must be refused, or give the very documents. A file whose records have
 // right checksums again, and a row, must be refused or give documents that are written or refused.
@@ -91,8 +91,8 @@ Bytes with_checksums(ByteView bytes) {
     if (reader.failed()) break;
     const auto kind = static_cast<RecordKind>(head % 4);
     const Bytes record = pipeline::write_record(
-        kind, reader.take(static_cast<std::size_t>(
-                  std::min<std::uint64_t>(head / 4, reader.remaining()))));
+        kind, reader.take(
+                  static_cast<std::size_t>(std::min<std::uint64_t>(head / 4, reader.remaining()))));
     writer.append(record);
     reader.take(std::min<std::size_t>(4, reader.remaining()));
     std::size_t end = kind == RecordKind::commit ? 1 : 0;

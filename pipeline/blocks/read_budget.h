@@ -65,8 +65,8 @@ class ReadBudget {
   std::uint64_t items_ = 0;
 };
 
-/// What a writer keeps to, so that readers with the usual limits take its file: as a whole, and each
-/// part of it. So what a block claims beyond its own bytes counts, whatever others leave.
+/// What a writer keeps to, so that readers with the usual limits take its file: as a whole, and
+/// each part of it. So what a block claims beyond its own bytes counts, whatever others leave.
 class WriteBudget {
  public:
   /// Takes a block or a record of documents; false if no reader would.

@@ -14,7 +14,7 @@ shift 2
 here=$(dirname "$0")
 names=("$@")
 if [ ${#names[@]} -eq 0 ]; then
-  for source in "$here"/fuzz_*.cpp; do
+  for source in "$here"/fuzz_*.cpp "$here"/*/fuzz_*.cpp; do
     source=${source##*/fuzz_}
     names+=("${source%.cpp}")
   done

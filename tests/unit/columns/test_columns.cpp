@@ -428,8 +428,7 @@ TEST_CASE("texts beyond the limit are refused") {
 TEST_CASE("texts may have exactly the bytes of the limit") {
   for (const std::string& text : {std::string(), std::string("a"), std::string(R"({"new":[1]} )"),
                                   std::string("<new a=\"1\"> </new>"), std::string(5000, ' ')}) {
-    for (const TextKind kind :
-         {TextKind::bytes, TextKind::json, TextKind::xml, TextKind::table}) {
+    for (const TextKind kind : {TextKind::bytes, TextKind::json, TextKind::xml, TextKind::table}) {
       const Bytes packed = columns::pack_texts(std::vector<Text>{{kind, text}});
       CHECK(columns::unpack_texts(packed, text.size()));
       CHECK((text.empty() || !columns::unpack_texts(packed, text.size() - 1)));

@@ -182,8 +182,7 @@ TEST_CASE("an open file is read as often as one likes") {
   Limits limits;
   limits.expanded = 100'000;  // so that few reads claim more than all bytes of the file may
   limits.claimed = 1000;
-  const Bytes file =
-      changed(*pipeline::write_container(encoded({house(1), house(2)})), {house(3)});
+  const Bytes file = changed(*pipeline::write_container(encoded({house(1), house(2)})), {house(3)});
   Served served{file, {}};
   auto opened = ContainerFile::open(served.file(), limits);
   REQUIRE(opened);

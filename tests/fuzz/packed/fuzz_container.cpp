@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "columns/columns.h"
-#include "fuzz_formats.h"
 #include "pipeline/container.h"
 #include "pipeline/file/selection.h"
+#include "tests/fuzz/fuzz_formats.h"
 
 namespace {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // libFuzzer harness of the reader of Watertight files by ranges. A file with several blocks and an
-// index is made; the input is added (XOR) to the bytes of its index and its commits, and each record
-// gets the right checksum. The first byte chooses what the callback does
-// wrong: it fails, or gives a byte less, at some call. The reader must give features or an Error,
-// ask for nothing outside of the file, and hold no more than the file allows.
+// index is made; the input is added (XOR) to the bytes of its index and its commits, and each
+// record gets the right checksum. The first byte chooses what the callback does wrong: it fails, or
+// gives a byte less, at some call. The reader must give features or an Error, ask for nothing
+// outside of the file, and hold no more than the file allows.
 #include <algorithm>
 #include <string>
 #include <vector>
 
 #include "formats/document.h"
-#include "fuzz_formats.h"
 #include "pipeline/container.h"
 #include "pipeline/file/selection.h"
+#include "tests/fuzz/fuzz_formats.h"
 
 namespace {
 
@@ -28,14 +28,16 @@ std::string box_line(int number) {
   const std::string y = std::to_string(10 * number + 5);
   std::string vertices;
   for (const char* const z : {"0", "5"}) {
-    for (const auto& [a, b] : {std::pair(x, x), std::pair(y, x), std::pair(y, y), std::pair(x, y)}) {
+    for (const auto& [a, b] :
+         {std::pair(x, x), std::pair(y, x), std::pair(y, y), std::pair(x, y)}) {
       if (!vertices.empty()) vertices += ',';
       vertices.append("[").append(a).append(",").append(b).append(",").append(z).append("]");
     }
   }
   std::string line = R"({"type":"CityJSONFeature","id":")";
   line.append(id).append(R"(","CityObjects":{")").append(id);
-  line += R"(":{"type":"Building","geometry":[{"type":"Solid","lod":"1","boundaries":[[[[0,3,2,1]],)";
+  line +=
+      R"(":{"type":"Building","geometry":[{"type":"Solid","lod":"1","boundaries":[[[[0,3,2,1]],)";
   line += "[[4,5,6,7]],[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]]]}]}},\"vertices\":[";
   return line.append(vertices).append("]}\n");
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "columns/columns.h"
-#include "fuzz_formats.h"
+#include "tests/fuzz/fuzz_formats.h"
 
 namespace {
 
@@ -43,8 +43,7 @@ void read_as_packed(ByteView bytes) {
 }
 
 Bytes pack_and_read(ByteView bytes) {
-  const std::vector<columns::Text> texts{
-      {static_cast<TextKind>(bytes.size() % 4), as_text(bytes)}};
+  const std::vector<columns::Text> texts{{static_cast<TextKind>(bytes.size() % 4), as_text(bytes)}};
   Bytes packed = columns::pack_texts(texts);
   const auto back = columns::unpack_texts(packed, bytes.size());
   fuzz::require(back.has_value() && back->size() == 1 && back->front() == as_text(bytes));

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "fuzz_formats.h"
 #include "packing/text_dictionary.h"
 #include "pipeline/pipeline.h"
 #include "store/rows/packed_solids.h"
+#include "tests/fuzz/fuzz_formats.h"
 
 namespace {
 
@@ -79,8 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   row.skeleton.bytes.assign(text.begin(), text.end());
   read(row);
   row.skeleton.bytes = *packing::pack(as_text(text), row.skeleton.dictionary.get());
-  const auto back =
-      packing::unpack(row.skeleton.bytes, row.skeleton.dictionary.get(), text.size());
+  const auto back = packing::unpack(row.skeleton.bytes, row.skeleton.dictionary.get(), text.size());
   fuzz::require(back.has_value() && *back == as_text(text));
   read(row);
   return 0;

@@ -91,11 +91,17 @@ TEST_CASE(
     const auto row = store->get("delft", feature.id);
     REQUIRE(row);
     REQUIRE(row->solids.size() == feature.solids.size());
+    const auto stored = pipeline::decode_solids(*row);
+    REQUIRE(stored);
+    REQUIRE(stored->size() == feature.solids.size());
     for (std::size_t i = 0; i < row->solids.size(); ++i, ++number) {
-      const auto decoded = decode(row->solids[i].blob);
+      const auto blob = pipeline::blob_of(*row, i);
+      REQUIRE(blob);
+      const auto decoded = decode(*blob);
       REQUIRE(decoded);
+      CHECK(formats::write_ewkb((*stored)[i].solid) == formats::write_ewkb(decoded->solid));
       CHECK(formats::write_ewkb(feature.solids[i].solid) == formats::write_ewkb(decoded->solid));
-      blob_bytes += row->solids[i].blob.size();
+      blob_bytes += blob->size();
       if (number % 37 != 0) continue;
       const auto alone = pages->solid(number);
       REQUIRE(alone);

@@ -35,7 +35,6 @@ void ValueCoder::make_indexes() {
     const std::vector<std::uint32_t>& values = columns_[column].values;
     for (std::uint32_t i = 0; i < values.size(); ++i) index_of_[key_of(column, values[i])] = i;
   }
-  uuids_.make_index();
 }
 
 void ValueCoder::pass(std::optional<std::int64_t> number) {

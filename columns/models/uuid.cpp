@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "columns/models/uuid.h"
 
+#include <algorithm>
+
+#include "base/bytes.h"
+
 namespace watertight::columns {
 namespace {
 
@@ -109,10 +113,15 @@ UuidCoder::Digits UuidCoder::code_digits(EntropyStream& stream, ContextMixer& mi
   return coded;
 }
 
+std::optional<std::uint32_t> UuidCoder::number_of(const Uuid& uuid) const {
+  return known_.find(as_text(ByteView(uuid.digits)));
+}
+
 /// Codes whether a UUID is the last one, the one after it, or an earlier one; none for a new one.
-std::optional<std::size_t> UuidCoder::code_known(EntropyStream& stream, ContextMixer& mixer,
-                                                 Hash column, std::optional<std::size_t> known) {
-  if (known_.empty()) return std::nullopt;
+std::optional<std::uint32_t> UuidCoder::code_known(EntropyStream& stream, ContextMixer& mixer,
+                                                   Hash column,
+                                                   std::optional<std::uint32_t> known) {
+  if (known_.size() == 0) return std::nullopt;
   if (mixer.flag(stream, Question::is_last_uuid, {column}, known == last_)) return last_;
   if (!mixer.flag(stream, Question::is_known_uuid, {column}, known.has_value())) {
     return std::nullopt;
@@ -121,32 +130,27 @@ std::optional<std::size_t> UuidCoder::code_known(EntropyStream& stream, ContextM
   if (has_next && mixer.flag(stream, Question::is_next_uuid, {column}, known == last_ + 1)) {
     return last_ + 1;
   }
-  const std::size_t newest = known_.size() - 1;
+  const std::uint32_t newest = known_.size() - 1;
   const std::uint64_t distance = mixer.number(stream, Question::uuid_distance, {column},
                                               newest - known.value_or(newest), kDistanceBits);
   if (distance > newest) {
     stream.fail();
     return 0;
   }
-  return newest - static_cast<std::size_t>(distance);
+  return newest - static_cast<std::uint32_t>(distance);
 }
 
 Uuid UuidCoder::code(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid) {
-  std::optional<std::size_t> known;
-  if (!stream.is_reading()) {
-    const auto found = number_of_.find(uuid.digits);
-    if (found != number_of_.end()) known = found->second;
-  }
-  known = code_known(stream, mixer, column, known);
   Uuid coded;
+  const auto known =
+      code_known(stream, mixer, column, stream.is_reading() ? std::nullopt : number_of(uuid));
   if (known) {
-    coded.digits = known_[*known];
     last_ = *known;
+    std::ranges::copy(known_.text(last_), coded.digits.begin());
   } else {
     coded.digits = code_digits(stream, mixer, column, uuid.digits);
-    last_ = known_.size();
-    known_.push_back(coded.digits);
-    if (!stream.is_reading()) number_of_.emplace(coded.digits, last_);
+    if (knows(coded)) stream.fail();  // a new one that is known
+    last_ = known_.add(as_text(ByteView(coded.digits)));
   }
   coded.is_upper_case = mixer.flag(stream, Question::is_upper_case, {column}, uuid.is_upper_case);
   return coded;

@@ -6,13 +6,12 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "columns/models/context_mixer.h"
+#include "columns/value_table.h"
 
 namespace watertight::columns {
 
@@ -37,23 +36,19 @@ class UuidCoder {
   /// Codes the digits of a UUID and the case of its letters.
   Uuid code(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid);
 
-  /// Makes a coder that has read able to write.
-  void make_index() {
-    for (std::size_t i = 0; i < known_.size(); ++i) number_of_.emplace(known_[i], i);
-  }
-  /// Whether a UUID was coded before. For writers.
-  bool knows(const Uuid& uuid) const { return number_of_.contains(uuid.digits); }
+  /// Whether a UUID was coded before.
+  bool knows(const Uuid& uuid) const { return number_of(uuid).has_value(); }
 
  private:
   using Digits = std::array<std::uint8_t, 32>;
-  std::optional<std::size_t> code_known(EntropyStream& stream, ContextMixer& mixer, Hash column,
-                                        std::optional<std::size_t> known);
+  std::optional<std::uint32_t> number_of(const Uuid& uuid) const;
+  std::optional<std::uint32_t> code_known(EntropyStream& stream, ContextMixer& mixer, Hash column,
+                                          std::optional<std::uint32_t> known);
   static Digits code_digits(EntropyStream& stream, ContextMixer& mixer, Hash column,
                             const Digits& digits);
 
-  std::vector<Digits> known_;
-  std::map<Digits, std::size_t> number_of_;  // empty for a reader
-  std::size_t last_ = 0;                     // the number of the last UUID
+  ValueTable known_;        // their digits, a byte each
+  std::uint32_t last_ = 0;  // the number of the last UUID
 };
 
 }  // namespace watertight::columns

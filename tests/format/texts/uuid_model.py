@@ -41,7 +41,9 @@ class Uuids:
         known = self.read_known(mixer, column)
         if known is None:
             known = len(self.known)
-            self.known.append(self.read_digits(mixer, column))
+            digits = self.read_digits(mixer, column)
+            require(digits not in self.known, "a new UUID that is known")
+            self.known.append(digits)
         self.last = known
         d = self.known[known]
         text = "-".join((d[:8], d[8:12], d[12:16], d[16:20], d[20:]))

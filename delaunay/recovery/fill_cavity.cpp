@@ -15,7 +15,11 @@ namespace {
 class Search {
  public:
   Search(std::span<const Point> points, Cavity cavity, std::size_t& steps)
-      : points_(points), steps_(steps), corners_(std::move(cavity.inner_vertices)) {
+      : points_(points),
+        steps_(steps),
+        outer_vertex_(cavity.outer_vertex),
+        base_(cavity.base),
+        corners_(std::move(cavity.inner_vertices)) {
     for (Triangle& triangle : cavity.front) {
       triangle = rotated(triangle);
       corners_.insert(corners_.end(), triangle.begin(), triangle.end());
@@ -97,7 +101,7 @@ class Search {
     const Triangle& base = front.back();
     for (const Index apex : corners_) {
       if (steps_ == 0) break;
-      if (geometry_contains(base, apex)) continue;
+      if (has_vertex(base, apex)) continue;
       if (geometry::orient3d(at(base[0]), at(base[1]), at(base[2]), at(apex)) <= 0) continue;
       --steps_;
       const int closed = closed_by(front, placed(base, apex));
@@ -109,15 +113,16 @@ class Search {
     return found;
   }
 
-  static bool geometry_contains(const Triangle& triangle, Index vertex) {
-    return std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
+  template <class Vertices>
+  static bool has_vertex(const Vertices& vertices, Index vertex) {
+    return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
   }
 
   /// The number of faces of the front, besides the base, that are faces of the tetrahedron; -1 if
   /// the tetrahedron is not inside.
   int closed_by(const std::vector<Triangle>& front,
                 const geometry::Tetrahedron& tetrahedron) const {
-    if (holds_corner(tetrahedron)) return -1;
+    if (crosses_hull(tetrahedron) || holds_corner(tetrahedron)) return -1;
     int closed = 0;
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const Triangle face = rotated(inward_face(tetrahedron, corner));
@@ -128,6 +133,16 @@ class Search {
       }
     }
     return closed;
+  }
+
+  /// True if the tetrahedron has the outer vertex, and a corner that is not in the plane of the
+  /// hull.
+  bool crosses_hull(const geometry::Tetrahedron& tetrahedron) const {
+    if (!has_vertex(tetrahedron, outer_vertex_)) return false;
+    return std::any_of(tetrahedron.begin(), tetrahedron.end(), [&](Index vertex) {
+      return vertex != outer_vertex_ && !has_vertex(base_, vertex) &&
+             geometry::orient3d(at(base_[0]), at(base_[1]), at(base_[2]), at(vertex)) != 0;
+    });
   }
 
   /// True if a corner of the cavity lies in the tetrahedron without being its vertex.
@@ -153,6 +168,8 @@ class Search {
 
   std::span<const Point> points_;
   std::size_t& steps_;
+  Index outer_vertex_;
+  Triangle base_;
   std::vector<Index> corners_;
   std::vector<Level> levels_;
   std::vector<Triangle> blocked_;

@@ -22,6 +22,10 @@ struct Cavity {
   /// Triangles meet in common vertices and edges only.
   std::vector<Triangle> front;
   std::vector<Index> inner_vertices;  // vertices inside the cavity or on its front
+  /// A vertex beyond the hull, or kNone. A tetrahedron that has it has its other corners in the
+  /// plane of `base`, so that none is inside and outside of the hull.
+  Index outer_vertex = kNone;
+  Triangle base{};
 };
 
 struct Filling {

@@ -424,7 +424,7 @@ class Recovery {
   /// Replaces the tetrahedra of a cavity, if a filling is found, and returns the filling. Every
   /// second pass may add points.
   Filling fill(const std::vector<Index>& old_ones, const Triangle& triangle, std::size_t& steps) {
-    Cavity cavity{front(old_ones, triangle), vertices_of(old_ones)};
+    Cavity cavity{front(old_ones, triangle), vertices_of(old_ones), apex_, triangle};
     const std::size_t point_count = points_.size();
     if (pass_ % 2 == 1) add_points(old_ones, triangle, cavity);
     Filling filling = fill_cavity(points_, std::move(cavity), steps);

@@ -145,5 +145,30 @@ TEST_CASE("the search for a filling ends with its steps") {
   CHECK(delaunay::fill_cavity(solid.vertices(), cavity, steps).tetrahedra.size() >= 5);
 }
 
+TEST_CASE("no tetrahedron of a filling is on both sides of the hull") {
+  // A pyramid over a square of the hull, and a cone below it. The edge from the outer vertex to the
+  // top would make four tetrahedra around it.
+  const std::vector<Point> points{{2, 2, 3}, {0, 0, 0}, {4, 0, 0},
+                                  {4, 4, 0}, {0, 4, 0}, {2, 2, -5}};
+  const Index top = 0;
+  const Index outer = 5;
+  delaunay::Cavity cavity;
+  for (Index i = 1; i <= 4; ++i) {
+    const Index next = i % 4 + 1;
+    cavity.front.push_back({next, i, top});
+    cavity.front.push_back({i, next, outer});
+  }
+  cavity.outer_vertex = outer;
+  cavity.base = {1, 2, 3};
+  std::size_t steps = 1000;
+  const delaunay::Filling filling = delaunay::fill_cavity(points, cavity, steps);
+  CHECK(filling.tetrahedra.size() == 4);
+  for (const geometry::Tetrahedron& t : filling.tetrahedra) {
+    const bool is_outside = std::find(t.begin(), t.end(), outer) != t.end();
+    const bool is_inside = std::find(t.begin(), t.end(), top) != t.end();
+    CHECK(is_outside != is_inside);
+  }
+}
+
 }  // namespace
 }  // namespace watertight

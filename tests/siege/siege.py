@@ -183,12 +183,21 @@ def kind_of(sample):
     return "read" if sample[1].startswith("/collections") else sample[1]
 
 
+def phase_of(sample, phases):
+    """The event if the request was under way during any part of it, else the phase it began in, or none."""
+    begun, answered = sample[0], sample[0] + sample[2] / 1000
+    _, event_begin, event_end = phases[1]
+    if begun < event_end and answered >= event_begin:
+        return phases[1][0]
+    return next((phase for phase, begin, end in phases if begin <= begun < end), None)
+
+
 def judge(samples, phases, situation):
     """A table of what each kind of request took in each phase, and the complaints."""
     table, complaints = {}, []
-    for phase, begin, end in phases:
+    for phase, _, _ in phases:
         for kind in KINDS:
-            chosen = [s for s in samples if begin <= s[0] < end and kind_of(s) == kind]
+            chosen = [s for s in samples if phase_of(s, phases) == phase and kind_of(s) == kind]
             if not chosen:
                 complaints.append(f"{phase}: no answer for {kind}")
                 continue
@@ -234,8 +243,8 @@ def run(options, folder):
         phases, complaints = [], []
         begin = time.monotonic()
         time.sleep(options.seconds)
+        middle = time.monotonic()
         with event(service, options.situation):
-            middle = time.monotonic()
             phases.append(("before", begin, middle))
             time.sleep(options.seconds)
         over = time.monotonic()

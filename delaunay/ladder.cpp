@@ -262,9 +262,8 @@ class Climb {
         return !options_.strict && is_new(rung);
       case Rung::triangles_scaled:
         return is_new(rung);
-      case Rung::recovered:
-        return canonical_.triangles.size() >= options_.recovered_from;
       case Rung::delaunay:
+      case Rung::recovered:
       case Rung::tetgen:
         return true;
       case Rung::none:
@@ -361,14 +360,24 @@ class Climb {
 
   void try_recovered() {
     if (!following_ && !make_delaunay()) return;
+    std::vector<Index> missing;
+    for (Index i = 0; i < following_->triangles.size(); ++i) {
+      if (following_->delaunay_face[i] == kNone) missing.push_back(i);
+    }
     Result<RecoveredFaces> recovered =
         recover_faces(solid_.vertices(), std::exchange(delaunay_tetrahedra_, {}),
-                      following_->triangles, options_.cancel);
+                      following_->triangles, missing, options_.cancel);
     if (!recovered) return conclude(recovered.error());
     if (recovered->missing > 0) {
       conclude_missing(recovered->missing, "recovered");
       following_.reset();
       return;
+    }
+    const FollowingTriangles following = *std::exchange(following_, std::nullopt);
+    following_.emplace();
+    for (std::size_t i = 0; i < recovered->triangles.size(); ++i) {
+      following_->triangles.push_back(recovered->triangles[i]);
+      following_->facet_of.push_back(following.facet_of[recovered->source[i]]);
     }
     judge_own(std::move(recovered->points), std::move(recovered->tetrahedra), Rung::recovered);
   }

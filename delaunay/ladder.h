@@ -52,9 +52,6 @@ struct LadderOptions {
                         // triangles
   Rung first_rung = Rung::delaunay;  // the paper's table and tests leave out the rungs before it
   Rung last_rung = Rung::tetgen;
-  /// Boundary triangles from which on rung `recovered` is tried: engines are quicker on small
-  /// solids, and fail on large ones of which rounding has made many triangles non-Delaunay.
-  std::size_t recovered_from = 20'000;
   double seconds_per_rung = 0;  // CPU time of an engine on one rung; 0: by size (2 s and more)
   /// CPU time of all engines on one solid together; 0: by size (20 s and more, see
   /// default_ladder_seconds()). A rung gets the time that those before it left.

@@ -161,9 +161,31 @@ class Search {
 
   /// True if a face that is not in the front meets the front in common vertices and edges only.
   bool is_free(const std::vector<Triangle>& front, const Triangle& face) const {
+    const Box box = box_of(face);
     return std::none_of(front.begin(), front.end(), [&](const Triangle& other) {
-      return is_intersection(geometry::classify_contact(points_, face, other));
+      return overlap(box, other) &&
+             is_intersection(geometry::classify_contact(points_, face, other));
     });
+  }
+
+  Box box_of(const Triangle& t) const {
+    Box box{at(t[0]), at(t[0])};
+    for (const Index vertex : {t[1], t[2]}) {
+      const Point& p = at(vertex);
+      box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
+      box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
+    }
+    return box;
+  }
+
+  /// Whether a box and the box of a triangle have a point in common.
+  bool overlap(const Box& box, const Triangle& t) const {
+    const Point& a = at(t[0]);
+    const Point& b = at(t[1]);
+    const Point& c = at(t[2]);
+    return std::max({a.x, b.x, c.x}) >= box.min.x && std::min({a.x, b.x, c.x}) <= box.max.x &&
+           std::max({a.y, b.y, c.y}) >= box.min.y && std::min({a.y, b.y, c.y}) <= box.max.y &&
+           std::max({a.z, b.z, c.z}) >= box.min.z && std::min({a.z, b.z, c.z}) <= box.max.z;
   }
 
   std::span<const Point> points_;

@@ -1,194 +1,281 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Each missing triangle is put in by itself: the tetrahedra that hold a point of its inside, or of
-// the inside of an edge that is missing too, are taken away, and the cavity is filled anew with the
-// triangle in it. Triangles that are faces already stay faces. All decisions about points are
-// exact; where a Steiner point lies is computed by additions and divisions by 4 only, so that it is
-// the same on every machine.
+// Missing edges, then missing triangles are made by flips. Where flips end, an edge of the triangle
+// is divided in its middle, and flips go on with the parts. What is left is searched for: the
+// tetrahedra that hold a point of the inside of a missing triangle, or of the inside of an edge
+// that is missing too, are taken away, and the cavity is filled anew with the triangle in it.
+// Triangles that are faces already stay faces. All decisions about points are exact; where a
+// Steiner point lies is computed by additions and divisions by 2 and 4 only, so that it is the same
+// on every machine, and a point on an edge lies on it exactly.
 #include "delaunay/recovery/recover_faces.h"
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <map>
 #include <optional>
-#include <unordered_set>
 #include <utility>
 
 #include "delaunay/cancellation.h"
+#include "delaunay/recovery/coordinate_order.h"
 #include "delaunay/recovery/fill_cavity.h"
+#include "delaunay/recovery/flips.h"
+#include "delaunay/recovery/section.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/predicates/predicates.h"
 
 namespace watertight::delaunay {
 namespace {
 
-/// The most tests that the search for the filling of one triangle's cavities makes in the first
-/// pass; twice as many in each of the next ones.
+/// The most tests that the search for the filling of one triangle's cavities makes.
 constexpr std::size_t kFillSteps = 1000;
 /// The most tests for all triangles together, for each triangle of the boundary.
 constexpr std::size_t kFillStepsPerTriangle = 16;
-/// The most tetrahedra that are looked at for each triangle of the boundary, all together.
-constexpr std::size_t kVisitsPerTriangle = 512;
+/// The most tetrahedra that flips, and that searches look at for each triangle of the boundary, and
+/// in any case.
+constexpr std::size_t kVisitsPerTriangle = 2048;
+constexpr std::size_t kFewVisits = 65'536;
 /// The most times that a cavity grows.
-constexpr int kRounds = 8;
-/// The most passes over the missing triangles: a cavity can become simpler when others are filled.
-constexpr std::size_t kPasses = 24;
-/// The passes that double the tests of the pass before.
-constexpr std::size_t kDoublings = 5;
+constexpr int kGrowths = 8;
+/// The most rounds, each of which divides an edge of each missing triangle.
+constexpr std::size_t kRounds = 8;
+/// The rounds of flips alone; the search begins after them.
+constexpr std::size_t kRoundsOfFlips = 2;
+/// The most parts of triangles for each triangle of the boundary.
+constexpr std::size_t kPartsPerTriangle = 4;
 /// The number of triangles after which the search ends if it did not find half of them.
 constexpr std::size_t kSample = 256;
-
-struct TriangleHash {
-  std::size_t operator()(const Triangle& t) const {
-    std::uint64_t hash = t[0];
-    for (const Index vertex : {t[1], t[2]}) hash = (hash ^ vertex) * 0x9E3779B97F4A7C15ULL;
-    return static_cast<std::size_t>(hash ^ hash >> 32);
-  }
-};
 
 bool has_vertex(const geometry::Tetrahedron& tetrahedron, Index vertex) {
   return std::find(tetrahedron.begin(), tetrahedron.end(), vertex) != tetrahedron.end();
 }
 
-/// How a tetrahedron lies to the plane of a triangle, and whether it holds points of the triangle.
-class Section {
- public:
-  Section(std::span<const Point> points, const Triangle& triangle,
-          const geometry::Tetrahedron& tetrahedron)
-      : points_(points), triangle_(triangle), tetrahedron_(tetrahedron) {
-    const auto& [a, b, c] = triangle;
-    for (std::size_t i = 0; i < 4; ++i) side_[i] = orientation(a, b, c, tetrahedron[i]);
-  }
-
-  /// True if the closed tetrahedron holds a point of the inside of the triangle. Two convex
-  /// polygons in a plane are apart if and only if the line of an edge of one parts them.
-  bool meets_inside() {
-    if (!meets_plane() || is_beyond_a_face({0, 1, 2})) return false;
-    for (std::size_t edge = 0; edge < 3; ++edge) {
-      if (range_beside(edge)[1] <= 0) return false;
-    }
-    return true;
-  }
-
-  /// True if the closed tetrahedron holds a point of the inside of an edge. May also be true if it
-  /// only touches the line of the edge along a segment.
-  bool meets_edge(std::size_t edge) {
-    if (!meets_plane() || is_beyond_a_face({edge, (edge + 1) % 3, edge})) return false;
-    const auto [least, most] = range_beside(edge);
-    return least <= 0 && most >= 0;
-  }
-
- private:
-  int orientation(Index a, Index b, Index c, Index d) const {
-    if (a == d || b == d || c == d || a == c || b == c) return 0;
-    return geometry::orient3d(points_[a], points_[b], points_[c], points_[d]);
-  }
-
-  bool meets_plane() const {
-    const auto [least, most] = std::minmax_element(side_.begin(), side_.end());
-    return *least <= 0 && *most >= 0;
-  }
-
-  /// True if these corners of the triangle are not inside a face of the tetrahedron, nor all on it.
-  bool is_beyond_a_face(const std::array<std::size_t, 3>& corners) const {
-    for (std::size_t face = 0; face < 4; ++face) {
-      const auto [a, b, c] = inward_face(tetrahedron_, face);
-      int least = 0;
-      int most = -1;
-      for (const std::size_t corner : corners) {
-        const int side = orientation(a, b, c, triangle_[corner]);
-        least = std::min(least, side);
-        most = std::max(most, side);
-      }
-      if (most <= 0 && least < 0) return true;
-    }
-    return false;
-  }
-
-  /// The least and the largest side of the tetrahedron's section on the line of an edge of the
-  /// triangle; the triangle itself is on the side +1.
-  std::array<int, 2> range_beside(std::size_t edge) const {
-    const Index p = triangle_[edge];
-    const Index q = triangle_[(edge + 1) % 3];
-    std::array<int, 2> range{1, -1};
-    const auto add = [&](int side) {
-      range = {std::min(range[0], side), std::max(range[1], side)};
-    };
-    const auto off = static_cast<std::size_t>(
-        std::find_if(side_.begin(), side_.end(), [](int side) { return side != 0; }) -
-        side_.begin());
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (side_[i] == 0) add(orientation(p, q, tetrahedron_[i], tetrahedron_[off]) * side_[off]);
-      for (std::size_t j = 0; j < 4; ++j) {
-        if (side_[i] > 0 && side_[j] < 0) {
-          add(orientation(p, q, tetrahedron_[j], tetrahedron_[i]));
-        }
-      }
-    }
-    return range;
-  }
-
-  std::span<const Point> points_;
-  const Triangle& triangle_;
-  const geometry::Tetrahedron& tetrahedron_;
-  std::array<int, 4> side_{};
-};
-
 class Recovery {
  public:
   Recovery(std::span<const Point> points, std::vector<geometry::Tetrahedron> tetrahedra,
-           std::span<const Triangle> triangles, const CancelPoll& is_cancelled)
+           std::span<const Triangle> triangles, std::vector<Index> missing,
+           const CancelPoll& is_cancelled)
       : points_(points.begin(), points.end()),
         apex_(static_cast<Index>(points.size())),
         mesh_(std::move(tetrahedra), points.size()),
-        visits_left_(4096 + kVisitsPerTriangle * triangles.size()),
+        missing_(std::move(missing)),
+        visits_left_(kFewVisits + kVisitsPerTriangle * triangles.size()),
         steps_left_(16384 + kFillStepsPerTriangle * triangles.size()),
-        cancellation_(is_cancelled) {
+        cancellation_(is_cancelled),
+        flips_(points_, mesh_, wanted_, kFewVisits + kVisitsPerTriangle * triangles.size(),
+               is_cancelled) {
     points_.emplace_back();  // the apex
-    wanted_.reserve(triangles.size());
-    for (const Triangle& triangle : triangles) wanted_.insert(sorted(triangle));
-    for (const Triangle& triangle : triangles) {
-      if (!is_face(triangle)) missing_.push_back(triangle);
+    for (Index i = 0; i < triangles.size(); ++i) {
+      triangles_.push_back({sorted(triangles[i]), i});
+      wanted_.add(triangles_.back().vertices);
     }
+    std::sort(missing_.begin(), missing_.end());
   }
 
   Result<RecoveredFaces> run() {
-    for (; pass_ < kPasses && !missing_.empty() && is_promising_; ++pass_) {
-      if (!run_pass()) return Error{ErrorCode::cancelled, "cancelled by the caller"};
+    const std::size_t most_parts = 64 + kPartsPerTriangle * triangles_.size();
+    bool is_cancelled = !flip();
+    for (std::size_t round = 0; round < kRounds && !is_cancelled && is_promising(); ++round) {
+      if (round >= kRoundsOfFlips) is_cancelled = !search();
+      if (is_cancelled || missing_.empty() || triangles_.size() > most_parts) break;
+      divide_missing();
+      is_cancelled = !flip();
     }
-    return RecoveredFaces{points_without_apex(), tetrahedra_without_apex(), missing_.size()};
+    if (is_cancelled) return Error{ErrorCode::cancelled, "cancelled by the caller"};
+    return result();
   }
 
  private:
-  /// Tries each missing triangle once. False if the caller cancels.
-  bool run_pass() {
-    std::vector<Triangle> still_missing;
-    for (std::size_t i = 0; i < missing_.size(); ++i) {
-      if (cancellation_.is_wanted()) return false;
-      if (!put_in(missing_[i])) still_missing.push_back(missing_[i]);
-      const bool is_failing = i + 1 >= kSample && still_missing.size() > (i + 1) / 2;
-      if (is_failing || visits_left_ == 0 || steps_left_ == 0) {
-        is_promising_ = false;
-        still_missing.insert(still_missing.end(),
-                             missing_.begin() + static_cast<std::ptrdiff_t>(i) + 1, missing_.end());
-        break;
-      }
+  struct Wanted {
+    Triangle vertices{};  // sorted
+    Index source = kNone;
+  };
+  /// An edge that is divided.
+  struct Division {
+    Index missing = kNone;         // a missing triangle that has it
+    std::vector<Index> triangles;  // all that have it
+  };
+
+  bool is_promising() const { return !missing_.empty() && !is_failing_ && !flips_.is_exhausted(); }
+
+  RecoveredFaces result() {
+    RecoveredFaces result;
+    for (const Wanted& wanted : triangles_) {
+      result.triangles.push_back(without_apex(wanted.vertices));
+      result.source.push_back(wanted.source);
     }
-    missing_ = std::move(still_missing);
+    result.missing = missing_.size();
+    result.tetrahedra = mesh_.take();
+    for (geometry::Tetrahedron& t : result.tetrahedra) t = without_apex(t);
+    points_.erase(points_.begin() + apex_);
+    result.points = std::move(points_);
+    return result;
+  }
+
+  /// Searches once for each missing triangle. False if the caller cancels.
+  bool search() {
+    std::size_t failures = 0;
+    for (std::size_t i = 0; i < missing_.size() && !is_failing_; ++i) {
+      if (cancellation_.is_wanted()) return false;
+      if (!put_in(triangles_[missing_[i]].vertices)) ++failures;
+      const bool are_most_lost = i + 1 >= kSample && failures > (i + 1) / 2;
+      is_failing_ = are_most_lost || visits_left_ == 0 || steps_left_ == 0;
+    }
+    ++searches_;
+    forget_found();
     return true;
   }
 
-  std::vector<Point> points_without_apex() {
-    points_.erase(points_.begin() + apex_);
-    return std::move(points_);
+  template <class Vertices>
+  Vertices without_apex(Vertices vertices) const {
+    for (Index& vertex : vertices) vertex -= vertex > apex_ ? 1 : 0;
+    return vertices;
   }
 
-  std::vector<geometry::Tetrahedron> tetrahedra_without_apex() {
-    std::vector<geometry::Tetrahedron> tetrahedra = mesh_.take();
-    for (geometry::Tetrahedron& t : tetrahedra) {
-      for (Index& vertex : t) vertex -= vertex > apex_ ? 1 : 0;
+  /// Makes missing edges, then missing triangles by flips. False if the caller cancels.
+  bool flip() {
+    std::vector<VertexPair> edges;
+    for (const Index i : missing_) {
+      const std::array<VertexPair, 3> own = edges_of(triangles_[i].vertices);
+      edges.insert(edges.end(), own.begin(), own.end());
     }
-    return tetrahedra;
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    for (const auto& [a, b] : edges) {
+      if (cancellation_.is_wanted()) return false;
+      flips_.recover_edge(a, b);
+    }
+    for (const Index i : missing_) {
+      if (cancellation_.is_wanted()) return false;
+      const Triangle& triangle = triangles_[i].vertices;
+      const auto is_there = [&](const VertexPair& edge) { return is_edge(edge[0], edge[1]); };
+      if (std::ranges::all_of(edges_of(triangle), is_there)) flips_.recover_face(triangle);
+    }
+    forget_found();
+    return true;
+  }
+
+  void forget_found() {
+    std::erase_if(missing_, [this](Index i) { return is_face(triangles_[i].vertices); });
+  }
+
+  double squared_length(Index a, Index b) const {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double d = points_[b][axis] - points_[a][axis];
+      sum += d * d;
+    }
+    return sum;
+  }
+
+  /// The edge of a missing triangle to divide: the longest of those that are missing too, or if
+  /// there are none, the longest.
+  VertexPair edge_to_divide(const Triangle& triangle) {
+    VertexPair longest{};
+    std::pair<bool, double> most{false, -1};
+    for (const VertexPair& edge : edges_of(triangle)) {
+      const std::pair<bool, double> rank{!is_edge(edge[0], edge[1]),
+                                         squared_length(edge[0], edge[1])};
+      if (rank <= most) continue;
+      most = rank;
+      longest = edge;
+    }
+    return longest;
+  }
+
+  /// Divides an edge of each missing triangle.
+  void divide_missing() {
+    std::map<VertexPair, Division> divisions;
+    for (const Index i : missing_) {
+      divisions[edge_to_divide(triangles_[i].vertices)].missing = i;
+    }
+    for (Index i = 0; i < triangles_.size(); ++i) {
+      for (const VertexPair& edge : edges_of(triangles_[i].vertices)) {
+        const auto found = divisions.find(edge);
+        if (found != divisions.end()) found->second.triangles.push_back(i);
+      }
+    }
+    std::sort(missing_.begin(), missing_.end());
+    for (auto& [edge, division] : divisions) {
+      const std::optional<Index> middle = put_in_middle(edge, division.missing);
+      if (!middle) continue;
+      for (const Index i : std::exchange(division.triangles, {})) {
+        divide_triangle(i, edge, *middle, divisions);
+      }
+    }
+    forget_found();
+  }
+
+  /// Divides a triangle at the middle of an edge: the first part takes its place.
+  void divide_triangle(Index i, const VertexPair& edge, Index middle,
+                       std::map<VertexPair, Division>& divisions) {
+    const Triangle whole = triangles_[i].vertices;
+    const auto with_middle = [&](Index replaced) {
+      Triangle part = whole;
+      std::replace(part.begin(), part.end(), replaced, middle);
+      return sorted(part);
+    };
+    const auto second = static_cast<Index>(triangles_.size());
+    triangles_.push_back({with_middle(edge[0]), triangles_[i].source});
+    triangles_[i].vertices = with_middle(edge[1]);
+    wanted_.remove(whole);
+    wanted_.add(triangles_[i].vertices);
+    wanted_.add(triangles_[second].vertices);
+    if (std::binary_search(missing_.begin(), missing_.end(), i)) missing_.push_back(second);
+    // The other edge at the second end has the second part now.
+    for (const VertexPair& other : edges_of(whole)) {
+      const bool is_moved = other != edge && (other[0] == edge[1] || other[1] == edge[1]);
+      const auto found = is_moved ? divisions.find(other) : divisions.end();
+      if (found == divisions.end()) continue;
+      std::ranges::replace(found->second.triangles, i, second);
+      if (found->second.missing == i) found->second.missing = second;
+    }
+  }
+
+  /// The point in the middle of an edge, if doubles hold it.
+  std::optional<Point> middle(Index a, Index b) const {
+    const Point& p = points_[a];
+    const Point& q = points_[b];
+    const Point m{p.x / 2 + q.x / 2, p.y / 2 + q.y / 2, p.z / 2 + q.z / 2};
+    if (m == p || m == q || !geometry::is_on_segment(p, q, m)) return std::nullopt;
+    return m;
+  }
+
+  /// Puts a vertex in the middle of an edge of a missing triangle, with edges to all corners of the
+  /// tetrahedra that hold it. None if doubles have no such point.
+  std::optional<Index> put_in_middle(const VertexPair& edge, Index missing) {
+    const auto [a, b] = edge;
+    const std::optional<Point> point = middle(a, b);
+    if (!point) return std::nullopt;
+    std::vector<Index> around = star(a);
+    std::erase_if(around, [&, end = b](Index t) { return !has_vertex(mesh_.tetrahedron(t), end); });
+    if (around.empty()) {
+      around = cavity(triangles_[missing].vertices);
+      std::erase_if(around, [&](Index t) { return !holds(t, *point); });
+    }
+    const auto vertex = static_cast<Index>(points_.size());
+    std::vector<geometry::Tetrahedron> parts;
+    for (const Index t : around) {
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const auto [p, q, r] = inward_face(mesh_.tetrahedron(t), corner);
+        if (geometry::orient3d(points_[p], points_[q], points_[r], *point) > 0) {
+          parts.push_back({p, q, r, vertex});
+        }
+      }
+    }
+    // Where the visits have ended, tetrahedra that hold the point may not be known.
+    if (parts.empty() || visits_left_ == 0 || flips_.is_exhausted()) return std::nullopt;
+    points_.push_back(*point);
+    wanted_.remove(edge);
+    mesh_.replace(around, parts);
+    return vertex;
+  }
+
+  bool holds(Index t, const Point& p) const {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const auto [a, b, c] = inward_face(mesh_.tetrahedron(t), corner);
+      if (geometry::orient3d(points_[a], points_[b], points_[c], p) < 0) return false;
+    }
+    return true;
   }
 
   void mark(Index t) {
@@ -214,30 +301,12 @@ class Recovery {
   }
 
   std::vector<Index> star(Index vertex) {
-    ++mark_;
-    const Index first = mesh_.at_vertex(vertex);
-    if (first == kNone) return {};
-    std::vector<Index> found{first};
-    mark(first);
-    flood(found, [&](const geometry::Tetrahedron& t) { return has_vertex(t, vertex); });
-    return found;
+    const auto found = flips_.star(vertex);
+    return {found.begin(), found.end()};
   }
 
-  bool is_face(const Triangle& triangle) {
-    for (const Index t : star(triangle[0])) {
-      if (has_vertex(mesh_.tetrahedron(t), triangle[1]) &&
-          has_vertex(mesh_.tetrahedron(t), triangle[2])) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  bool is_edge(Index a, Index b) {
-    const std::vector<Index> around = star(a);
-    return std::any_of(around.begin(), around.end(),
-                       [&](Index t) { return has_vertex(mesh_.tetrahedron(t), b); });
-  }
+  bool is_face(const Triangle& triangle) { return flips_.is_face(triangle); }
+  bool is_edge(Index a, Index b) { return flips_.tetrahedron_at(a, b) != kNone; }
 
   /// The tetrahedra that must go so that the triangle can be a face.
   std::vector<Index> cavity(const Triangle& triangle) {
@@ -246,7 +315,7 @@ class Recovery {
       is_missing[edge] = !is_edge(triangle[edge], triangle[(edge + 1) % 3]);
     }
     const auto belongs = [&](const geometry::Tetrahedron& tetrahedron) {
-      Section section(points_, triangle, tetrahedron);
+      const Section section(points_, triangle, tetrahedron);
       if (section.meets_inside()) return true;
       for (std::size_t edge = 0; edge < 3; ++edge) {
         if (is_missing[edge] && section.meets_edge(edge)) return true;
@@ -274,7 +343,7 @@ class Recovery {
         const Index other = mesh_.neighbour(t, corner);
         const bool is_inside =
             other != kNone && std::binary_search(tetrahedra.begin(), tetrahedra.end(), other);
-        if (wanted_.contains(sorted(face))) {
+        if (wanted_.has(sorted(face))) {
           front.push_back(face);
         } else if (other == kNone && has_apex && is_in_plane(face, triangle)) {
           add_cone(face, front);
@@ -283,9 +352,9 @@ class Recovery {
         }
       }
     }
-    // The search fills over the last triangle first: each pass puts another one there.
-    std::rotate(front.begin(), front.begin() + static_cast<std::ptrdiff_t>(pass_ % front.size()),
-                front.end());
+    // The search fills over the last triangle first: each time it puts another one there.
+    const auto first = static_cast<std::ptrdiff_t>(searches_ % front.size());
+    std::rotate(front.begin(), front.begin() + first, front.end());
     return front;
   }
 
@@ -355,7 +424,7 @@ class Recovery {
           continue;
         }
         const Triangle face = rotated(inward_face(mesh_.tetrahedron(t), corner));
-        if (wanted_.contains(sorted(face))) continue;
+        if (wanted_.has(sorted(face))) continue;
         beyond.push_back(other);
         if (std::binary_search(blocked.begin(), blocked.end(), face)) {
           beyond_blocked.push_back(other);
@@ -370,7 +439,7 @@ class Recovery {
   }
 
   /// Adds, on each side of a triangle, the centre of a tetrahedron of the cavity that sees much of
-  /// the front: the one that sees most in the first of the passes, then the next ones.
+  /// the front: the one that sees most in the first of the searches, then the next ones.
   void add_points(const std::vector<Index>& tetrahedra, const Triangle& triangle, Cavity& cavity) {
     struct Candidate {
       std::size_t seen = 0;
@@ -389,7 +458,7 @@ class Recovery {
       if (side.empty()) continue;
       std::stable_sort(side.begin(), side.end(),
                        [](const Candidate& a, const Candidate& b) { return a.seen > b.seen; });
-      const std::size_t choice = (pass_ - 1) / 2 % side.size();
+      const std::size_t choice = (searches_ - 1) / 2 % side.size();
       cavity.inner_vertices.push_back(static_cast<Index>(points_.size()));
       points_.push_back(side[choice].point);
     }
@@ -408,11 +477,10 @@ class Recovery {
   bool put_in(const Triangle& triangle) {
     if (is_face(triangle)) return true;
     std::vector<Index> old_ones = cavity(triangle);
-    const std::size_t steps_before =
-        std::min(kFillSteps << std::min(pass_, kDoublings), steps_left_);
+    const std::size_t steps_before = std::min(kFillSteps, steps_left_);
     std::size_t steps = steps_before;
     bool is_filled = false;
-    for (int round = 0; round < kRounds && !old_ones.empty() && steps > 0; ++round) {
+    for (int round = 0; round < kGrowths && !old_ones.empty() && steps > 0; ++round) {
       const Filling filling = fill(old_ones, triangle, steps);
       is_filled = !filling.tetrahedra.empty();
       if (is_filled || old_ones.size() > kLargestFront || !grow(old_ones, filling.blocked)) break;
@@ -422,11 +490,11 @@ class Recovery {
   }
 
   /// Replaces the tetrahedra of a cavity, if a filling is found, and returns the filling. Every
-  /// second pass may add points.
+  /// second search may add points.
   Filling fill(const std::vector<Index>& old_ones, const Triangle& triangle, std::size_t& steps) {
     Cavity cavity{front(old_ones, triangle), vertices_of(old_ones), apex_, triangle};
     const std::size_t point_count = points_.size();
-    if (pass_ % 2 == 1) add_points(old_ones, triangle, cavity);
+    if (searches_ % 2 == 1) add_points(old_ones, triangle, cavity);
     Filling filling = fill_cavity(points_, std::move(cavity), steps);
     if (filling.tetrahedra.empty()) {
       points_.resize(point_count);
@@ -439,54 +507,26 @@ class Recovery {
 
   std::vector<Point> points_;  // the input's, the apex, and the points added
   Index apex_;                 // of cones over faces of the hull
-  std::size_t pass_ = 0;
-  bool is_promising_ = true;
+  std::size_t searches_ = 0;   // that ended
+  bool is_failing_ = false;    // the search has found too little
   TetrahedronMesh mesh_;
-  std::unordered_set<Triangle, TriangleHash> wanted_;  // sorted
-  std::vector<Triangle> missing_;
+  std::vector<Index> missing_;  // numbers of triangles that are no faces
+  std::vector<Wanted> triangles_;
+  KeptParts wanted_;
   std::vector<std::uint32_t> mark_of_;
   std::uint32_t mark_ = 0;
   std::size_t visits_left_;
   std::size_t steps_left_;
   Cancellation cancellation_;
+  Flips flips_;
 };
-
-/// Vertices in the order of their coordinates, so that a result does not depend on the numbering.
-struct CoordinateOrder {
-  std::vector<Index> vertex_at;  // rank -> vertex
-  std::vector<Index> rank_of;    // vertex -> rank
-};
-
-CoordinateOrder order_of(std::span<const Point> points) {
-  CoordinateOrder order;
-  order.vertex_at.resize(points.size());
-  std::iota(order.vertex_at.begin(), order.vertex_at.end(), Index{0});
-  std::sort(order.vertex_at.begin(), order.vertex_at.end(),
-            [&](Index a, Index b) { return points[a] < points[b]; });
-  order.rank_of.resize(points.size());
-  for (Index rank = 0; rank < points.size(); ++rank) order.rank_of[order.vertex_at[rank]] = rank;
-  return order;
-}
-
-/// A positive tetrahedron with its smallest vertices first, still positive.
-geometry::Tetrahedron normalized(geometry::Tetrahedron t) {
-  bool is_odd = false;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto least = static_cast<std::size_t>(
-        std::min_element(t.begin() + static_cast<std::ptrdiff_t>(i), t.end()) - t.begin());
-    if (least == i) continue;
-    std::swap(t[i], t[least]);
-    is_odd = !is_odd;
-  }
-  if (is_odd) std::swap(t[2], t[3]);
-  return t;
-}
 
 }  // namespace
 
 Result<RecoveredFaces> recover_faces(std::span<const Point> points,
                                      std::vector<geometry::Tetrahedron> tetrahedra,
                                      std::span<const Triangle> triangles,
+                                     std::span<const Index> missing,
                                      const CancelPoll& is_cancelled) {
   const CoordinateOrder order = order_of(points);
   std::vector<Point> sorted_points;
@@ -497,20 +537,34 @@ Result<RecoveredFaces> recover_faces(std::span<const Point> points,
     t = normalized(t);
   }
   std::sort(tetrahedra.begin(), tetrahedra.end());
-  std::vector<Triangle> sorted_triangles(triangles.begin(), triangles.end());
-  for (Triangle& triangle : sorted_triangles) {
+  std::vector<std::pair<Triangle, Index>> numbered;
+  for (Index i = 0; i < triangles.size(); ++i) {
+    Triangle triangle = triangles[i];
     for (Index& vertex : triangle) vertex = order.rank_of[vertex];
-    triangle = sorted(triangle);
+    numbered.push_back({sorted(triangle), i});
   }
-  std::sort(sorted_triangles.begin(), sorted_triangles.end());
+  std::sort(numbered.begin(), numbered.end());
+  std::vector<Triangle> sorted_triangles;
+  std::vector<Index> place_of(numbered.size());
+  for (const auto& [triangle, number] : numbered) {
+    place_of[number] = static_cast<Index>(sorted_triangles.size());
+    sorted_triangles.push_back(triangle);
+  }
+  std::vector<Index> sorted_missing;
+  for (const Index number : missing) sorted_missing.push_back(place_of[number]);
   Result<RecoveredFaces> recovered =
-      Recovery(sorted_points, std::move(tetrahedra), sorted_triangles, is_cancelled).run();
+      Recovery(sorted_points, std::move(tetrahedra), sorted_triangles, std::move(sorted_missing),
+               is_cancelled)
+          .run();
   if (!recovered) return recovered;
-  for (geometry::Tetrahedron& t : recovered->tetrahedra) {
-    for (Index& vertex : t) {
+  const auto renumber = [&](auto& vertices) {
+    for (Index& vertex : vertices) {
       if (vertex < points.size()) vertex = order.vertex_at[vertex];
     }
-  }
+  };
+  for (geometry::Tetrahedron& t : recovered->tetrahedra) renumber(t);
+  for (Triangle& t : recovered->triangles) renumber(t);
+  for (Index& source : recovered->source) source = numbered[source].second;
   std::copy(points.begin(), points.end(), recovered->points.begin());
   return recovered;
 }

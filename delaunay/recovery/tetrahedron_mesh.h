@@ -4,6 +4,7 @@
 // delaunay/.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -22,6 +23,14 @@ Triangle sorted(Triangle triangle);
 /// A triangle with its smallest vertex first, its orientation kept.
 Triangle rotated(Triangle triangle);
 Triangle reversed(const Triangle& triangle);
+
+/// Two vertices, the smaller one first.
+using VertexPair = std::array<Index, 2>;
+inline VertexPair pair_of(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+/// The edges of a triangle with its vertices in increasing order.
+inline std::array<VertexPair, 3> edges_of(const Triangle& sorted) {
+  return {{{sorted[0], sorted[1]}, {sorted[0], sorted[2]}, {sorted[1], sorted[2]}}};
+}
 
 class TetrahedronMesh {
  public:

@@ -37,9 +37,9 @@ RESET watertight.max_memory;
 SET watertight.libexec = :'hanging';
 SET watertight.max_seconds = 1;
 CREATE TEMP TABLE clock2 AS SELECT clock_timestamp() AS start;
-SELECT wt_is_valid(schoenhardt());
+SELECT wt_is_valid(ewkb) FROM hard;
 \set VERBOSITY sqlstate
-SELECT wt_is_valid(schoenhardt());
+SELECT wt_is_valid(ewkb) FROM hard;
 \set VERBOSITY default
 SELECT clock_timestamp() - start < interval '8 s' AS ended_soon FROM clock2;
 RESET watertight.libexec;

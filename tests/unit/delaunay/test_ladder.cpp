@@ -113,18 +113,25 @@ TEST_CASE("rung 0 accepts boxes, cavities, tunnels and facets with holes without
   }
 }
 
-TEST_CASE("without engines a solid that needs Steiner points is undecided") {
+/// Leaves out the rungs that need no engine.
+delaunay::LadderOptions engines_only() {
+  delaunay::LadderOptions options;
+  options.first_rung = delaunay::Rung::patch;
+  return options;
+}
+
+TEST_CASE("engines that are not there leave a solid undecided") {
   const Solid solid = samples::make_solid(samples::schoenhardt());
   const delaunay::LadderResult result =
-      delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), nullptr, {});
+      delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), nullptr, engines_only());
   CHECK_FALSE(result.certificate.has_value());
   CHECK(result.property == delaunay::CertificateRefusal::none);
   // The rung for triangles alone is left out: all facets are triangles.
-  REQUIRE(result.attempts.size() == 4);
-  CHECK(result.attempts[0].outcome.starts_with("refused: 4 of 8"));
-  CHECK(result.attempts[0].result == delaunay::RungOutcome::not_delaunay);
-  CHECK(result.attempts[1].result == delaunay::RungOutcome::not_started);
-  CHECK(result.attempts[1].outcome == "not-started: no engine executable");
+  REQUIRE(result.attempts.size() == 3);
+  for (const delaunay::RungAttempt& attempt : result.attempts) {
+    CHECK(attempt.result == delaunay::RungOutcome::not_started);
+    CHECK(attempt.outcome == "not-started: no engine executable");
+  }
 }
 
 TEST_CASE("Schoenhardt's prism needs Steiner points and gets them on every rung") {
@@ -132,11 +139,20 @@ TEST_CASE("Schoenhardt's prism needs Steiner points and gets them on every rung"
   const delaunay::LadderResult automatic = climb(samples::schoenhardt());
   INFO(attempts(automatic));
   REQUIRE(automatic.certificate.has_value());
-  CHECK(automatic.certificate->rung == delaunay::Rung::patch);
+  CHECK(automatic.certificate->rung == delaunay::Rung::recovered);
   CHECK(automatic.certificate->tetrahedralization.points.size() > 6);
-  CHECK(automatic.certificate->largest_deviation < 1e-6);
+  REQUIRE(automatic.attempts.size() == 2);
+  CHECK(automatic.attempts[0].outcome.starts_with("refused: 4 of 8"));
+  CHECK(automatic.attempts[0].result == delaunay::RungOutcome::not_delaunay);
 
-  delaunay::LadderOptions strict;
+  const delaunay::LadderResult patch = climb(samples::schoenhardt(), engines_only());
+  INFO(attempts(patch));
+  REQUIRE(patch.certificate.has_value());
+  CHECK(patch.certificate->rung == delaunay::Rung::patch);
+  CHECK(patch.certificate->tetrahedralization.points.size() > 6);
+  CHECK(patch.certificate->largest_deviation < 1e-6);
+
+  delaunay::LadderOptions strict = engines_only();
   strict.strict = true;
   const delaunay::LadderResult triangles = climb(samples::schoenhardt(), strict);
   INFO(attempts(triangles));
@@ -224,15 +240,15 @@ TEST_CASE("an engine that crashes, answers nonsense or is missing leaves a solid
   for (const std::string executable : {"/bin/false", "/bin/true", "/nonexistent/engine"}) {
     delaunay::EngineWorkers workers = broken_engines(executable);
     const Solid solid = samples::make_solid(samples::schoenhardt());
-    const delaunay::LadderResult result =
-        delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &workers, {});
+    const delaunay::LadderResult result = delaunay::climb_ladder(
+        solid, tessellate::triangulate_facets(solid), &workers, engines_only());
     INFO(executable << " " << attempts(result));
     CHECK_FALSE(result.certificate.has_value());
     CHECK(result.property == delaunay::CertificateRefusal::none);
-    REQUIRE(result.attempts.size() == 4);
+    REQUIRE(result.attempts.size() == 3);
     const bool is_missing = executable == "/nonexistent/engine";
-    for (std::size_t i = 1; i < 4; ++i) {
-      CHECK(result.attempts[i].result ==
+    for (const delaunay::RungAttempt& attempt : result.attempts) {
+      CHECK(attempt.result ==
             (is_missing ? delaunay::RungOutcome::not_started : delaunay::RungOutcome::crashed));
     }
   }
@@ -242,16 +258,16 @@ TEST_CASE("an engine that takes too long is stopped") {
   // The executable writes for ever; /bin/sleep without an operand would end at once, and /bin/cat
   // too, because its input is /dev/null.
   delaunay::EngineWorkers workers = broken_engines("/usr/bin/yes");
-  delaunay::LadderOptions options;
+  delaunay::LadderOptions options = engines_only();
   options.seconds_per_rung = 0.2;
   options.last_rung = delaunay::Rung::patch;
   const Solid solid = samples::make_solid(samples::schoenhardt());
   const delaunay::LadderResult result =
       delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &workers, options);
   INFO(attempts(result));
-  REQUIRE(result.attempts.size() == 2);
-  CHECK(result.attempts[1].outcome.starts_with("timed-out"));
-  CHECK(result.attempts[1].seconds < 5);
+  REQUIRE(result.attempts.size() == 1);
+  CHECK(result.attempts[0].outcome.starts_with("timed-out"));
+  CHECK(result.attempts[0].seconds < 5);
 }
 
 TEST_CASE("rungs that would give an engine the same task again are left out") {
@@ -312,13 +328,16 @@ TEST_CASE("statistics count solids by their result and attempts by class") {
                 .attempts);
     statistics += one;
   }
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(needs_steiner);
+  statistics.add(delaunay::climb_ladder(needs_steiner, facets, nullptr, engines_only()).attempts);
   statistics.add({});  // a result without attempts
-  CHECK(statistics.solids == 3);
-  CHECK(statistics.accepted == 1);
+  CHECK(statistics.solids == 4);
+  CHECK(statistics.accepted == 2);
   CHECK(statistics.refuted == 1);
   CHECK(statistics.undecided == 1);
   CHECK(statistics.count(delaunay::Rung::delaunay, delaunay::RungOutcome::accepted) == 1);
   CHECK(statistics.count(delaunay::Rung::delaunay, delaunay::RungOutcome::not_delaunay) == 1);
+  CHECK(statistics.count(delaunay::Rung::recovered, delaunay::RungOutcome::accepted) == 1);
   CHECK(statistics.count(delaunay::Rung::delaunay, delaunay::RungOutcome::refused_by_certificate) ==
         1);
   CHECK(statistics.count(delaunay::Rung::tetgen, delaunay::RungOutcome::not_started) == 1);

@@ -1,0 +1,449 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "delaunay/recovery/flips.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "geometry/predicates/predicates.h"
+
+namespace watertight::delaunay {
+namespace {
+
+/// The most vertices around an edge that is removed.
+constexpr std::size_t kLargestRing = 12;
+/// The most times that a ring is shortened for one edge or triangle.
+constexpr std::size_t kShrinks = 4;
+
+template <class Vertices>
+bool has(const Vertices& vertices, Index vertex) {
+  return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
+}
+
+std::size_t corner_of(const geometry::Tetrahedron& t, Index vertex) {
+  return static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
+}
+
+/// Sorts parts of the mesh, and keeps the first of equal ones.
+template <class Part>
+void sort_once(std::vector<Part>& parts) {
+  std::stable_sort(parts.begin(), parts.end());
+  parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+}
+
+/// The other two vertices x, y of a positive tetrahedron with p and q, so that (p, q, x, y) is
+/// positive.
+std::array<Index, 2> others(const geometry::Tetrahedron& t, Index p, Index q) {
+  const std::size_t i = corner_of(t, p);
+  const std::size_t j = corner_of(t, q);
+  std::array<std::size_t, 2> rest{};
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (k != i && k != j) rest[count++] = k;
+  }
+  // The parity of the permutation (i, j, rest[0], rest[1]).
+  const std::array<std::size_t, 4> order{i, j, rest[0], rest[1]};
+  bool is_odd = false;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = a + 1; b < 4; ++b) is_odd = is_odd != (order[a] > order[b]);
+  }
+  if (is_odd) std::swap(rest[0], rest[1]);
+  return {t[rest[0]], t[rest[1]]};
+}
+
+Index other_apex(const geometry::Tetrahedron& t, const Triangle& face) {
+  return *std::find_if(t.begin(), t.end(), [&](Index vertex) { return !has(face, vertex); });
+}
+
+}  // namespace
+
+std::size_t KeptParts::Hash::operator()(const Triangle& t) const {
+  std::uint64_t hash = t[0];
+  for (const Index vertex : {t[1], t[2]}) hash = (hash ^ vertex) * 0x9E3779B97F4A7C15ULL;
+  return static_cast<std::size_t>(hash ^ hash >> 32);
+}
+
+void KeptParts::add(const Triangle& sorted) {
+  faces_.insert(sorted);
+  for (const VertexPair& edge : edges_of(sorted)) add(edge);
+}
+
+/// Those of a segment are the faces and edges that it crosses, those of a triangle the edges that
+/// pass through its inside. If the ring of an edge is to be shortened, each of its tetrahedra
+/// counts too, but all of them less than one face or edge that is in the way.
+class Flips::Obstacles {
+ public:
+  static Obstacles of_segment(const Flips& flips, Index a, Index b) {
+    return {flips, {a, b}, std::nullopt};
+  }
+  static Obstacles of_triangle(const Flips& flips, const Triangle& triangle) {
+    return {flips, {}, triangle};
+  }
+  Obstacles with_ring(const VertexPair& edge) const {
+    Obstacles result = *this;
+    result.ring_ = edge;
+    result.weight_ = 2 * static_cast<int>(kLargestRing);
+    return result;
+  }
+
+  int of_face(const Triangle& face) const {
+    const bool is_crossed = !triangle_ && flips_.crosses_face(segment_[0], segment_[1], face);
+    const bool is_in_ring = ring_ && has(face, (*ring_)[0]) && has(face, (*ring_)[1]);
+    return (is_crossed ? weight_ : 0) + (is_in_ring ? 1 : 0);
+  }
+  int of_edge(const VertexPair& edge) const {
+    const bool is_crossed = triangle_ ? flips_.crosses_face(edge[0], edge[1], *triangle_)
+                                      : flips_.crosses_edge(segment_[0], segment_[1], edge);
+    return is_crossed ? weight_ : 0;
+  }
+
+ private:
+  Obstacles(const Flips& flips, const VertexPair& segment, const std::optional<Triangle>& triangle)
+      : flips_(flips), segment_(segment), triangle_(triangle) {}
+
+  const Flips& flips_;
+  VertexPair segment_;
+  std::optional<Triangle> triangle_;  // or else the segment
+  std::optional<VertexPair> ring_;
+  int weight_ = 1;
+};
+
+int Flips::side(Index a, Index b, Index c, Index d) const {
+  if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
+  return geometry::orient3d(points_[a], points_[b], points_[c], points_[d]);
+}
+
+std::span<const Index> Flips::star(Index vertex) {
+  star_.clear();
+  const Index first = mesh_.at_vertex(vertex);
+  if (first == kNone) return star_;
+  if (mark_of_.size() < mesh_.places()) mark_of_.resize(mesh_.places() + 64, 0);
+  ++mark_;
+  star_.push_back(first);
+  mark_of_[first] = mark_;
+  for (std::size_t i = 0; i < star_.size(); ++i) {
+    const geometry::Tetrahedron& t = mesh_.tetrahedron(star_[i]);
+    if (visits_left_ == 0) break;
+    --visits_left_;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      if (t[corner] == vertex) continue;
+      const Index other = mesh_.neighbour(star_[i], corner);
+      if (other == kNone || mark_of_[other] == mark_) continue;
+      mark_of_[other] = mark_;
+      star_.push_back(other);
+    }
+  }
+  return star_;
+}
+
+Index Flips::tetrahedron_at(Index a, Index b) {
+  for (const Index t : star(a)) {
+    if (has(mesh_.tetrahedron(t), b)) return t;
+  }
+  return kNone;
+}
+
+bool Flips::is_face(const Triangle& triangle) {
+  for (const Index t : star(triangle[0])) {
+    const geometry::Tetrahedron& corners = mesh_.tetrahedron(t);
+    if (has(corners, triangle[1]) && has(corners, triangle[2])) return true;
+  }
+  return false;
+}
+
+std::optional<Flips::Ring> Flips::ring_of(const MeshEdge& edge) const {
+  const auto [p, q] = edge.vertices;
+  const Index start = edge.tetrahedron;
+  Ring ring;
+  ring.edge = edge.vertices;
+  const auto [first, second] = others(mesh_.tetrahedron(start), p, q);
+  ring.vertices = {first, second};
+  ring.tetrahedra = {start};
+  // Forward over the face (p, q, last vertex), then backward if the hull is met.
+  Index t = start;
+  Index behind = first;
+  for (;;) {
+    const Index next = mesh_.neighbour(t, corner_of(mesh_.tetrahedron(t), behind));
+    if (next == start) {
+      ring.vertices.pop_back();
+      return ring;
+    }
+    if (next == kNone) break;
+    if (ring.vertices.size() == kLargestRing) return std::nullopt;
+    behind = ring.vertices.back();
+    ring.vertices.push_back(others(mesh_.tetrahedron(next), p, q)[1]);
+    ring.tetrahedra.push_back(next);
+    t = next;
+  }
+  t = start;
+  behind = second;
+  for (;;) {
+    const Index next = mesh_.neighbour(t, corner_of(mesh_.tetrahedron(t), behind));
+    if (next == kNone) return ring;
+    if (ring.vertices.size() == kLargestRing) return std::nullopt;
+    behind = ring.vertices.front();
+    ring.vertices.insert(ring.vertices.begin(), others(mesh_.tetrahedron(next), p, q)[0]);
+    ring.tetrahedra.insert(ring.tetrahedra.begin(), next);
+    t = next;
+  }
+}
+
+bool Flips::crosses_face(Index a, Index b, const Triangle& face) const {
+  if (has(face, a) || has(face, b)) return false;
+  const auto [p, q, r] = face;
+  const int first = side(a, b, p, q);
+  if (first == 0 || side(a, b, q, r) != first || side(a, b, r, p) != first) return false;
+  return side(p, q, r, a) * side(p, q, r, b) < 0;
+}
+
+bool Flips::crosses_edge(Index a, Index b, const VertexPair& edge) const {
+  const auto [p, q] = edge;
+  if (p == a || p == b || q == a || q == b || side(a, b, p, q) != 0) return false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto turn = [&](Index i, Index j, Index k) {
+      return geometry::orient2d(points_[i], points_[j], points_[k], axis);
+    };
+    const int p_side = turn(a, b, p);
+    const int q_side = turn(a, b, q);
+    if (p_side * q_side > 0) return false;
+    if (p_side * q_side < 0) return turn(p, q, a) * turn(p, q, b) < 0;
+  }
+  return false;
+}
+
+/// Looks for them from the tetrahedra at `a` on, through each one that is found.
+Flips::Gates Flips::gates(Index a, Index b) {
+  Gates gates;
+  const std::span<const Index> first = star(a);
+  std::vector<Index> pending(first.begin(), first.end());
+  ++mark_;
+  while (!pending.empty() && visits_left_ > 0) {
+    const Index t = pending.back();
+    pending.pop_back();
+    if (mark_of_[t] == mark_) continue;
+    mark_of_[t] = mark_;
+    --visits_left_;
+    const geometry::Tetrahedron& corners = mesh_.tetrahedron(t);
+    // turns[i][j] is how the edge of corners i and j turns around the segment.
+    std::array<std::array<int, 4>, 4> turns{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        turns[i][j] = side(a, b, corners[i], corners[j]);
+        turns[j][i] = -turns[i][j];
+        const MeshEdge edge{pair_of(corners[i], corners[j]), t};
+        if (turns[i][j] != 0 || !crosses_edge(a, b, edge.vertices)) continue;
+        gates.edges.push_back(edge);
+        const std::optional<Ring> ring = ring_of(edge);
+        if (ring) pending.insert(pending.end(), ring->tetrahedra.begin(), ring->tetrahedra.end());
+      }
+    }
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const std::size_t i = (corner + 1) % 4;
+      const std::size_t j = (corner + 2) % 4;
+      const std::size_t k = (corner + 3) % 4;
+      const bool is_around =
+          turns[i][j] != 0 && turns[i][j] == turns[j][k] && turns[j][k] == turns[k][i];
+      const Triangle face = sorted({corners[i], corners[j], corners[k]});
+      if (!is_around ||
+          side(face[0], face[1], face[2], a) * side(face[0], face[1], face[2], b) >= 0) {
+        continue;
+      }
+      gates.faces.push_back({face, t, corner});
+      for (const VertexPair& edge : edges_of(face)) gates.around.push_back({edge, t});
+      const Index other = mesh_.neighbour(t, corner);
+      if (other != kNone) pending.push_back(other);
+    }
+  }
+  sort_once(gates.edges);
+  sort_once(gates.faces);
+  sort_once(gates.around);
+  return gates;
+}
+
+/// The triangulation of a ring that leaves the fewest obstacles, and among those makes the most
+/// faces that are to be kept; each triangle makes two positive tetrahedra, with both ends of the
+/// edge. Cost: O(n^3) for n vertices.
+class Flips::RingTriangulation {
+ public:
+  /// Finds only triangulations with fewer than `limit` obstacles.
+  RingTriangulation(const Flips& flips, const Ring& ring, const Obstacles& obstacles, int limit)
+      : flips_(flips), ring_(ring), obstacles_(obstacles), limit_(limit) {
+    const std::size_t n = ring.vertices.size();
+    for (std::size_t length = 2; length < n; ++length) {
+      for (std::size_t i = 0; i + length < n; ++i) choose_middle(i, i + length);
+    }
+  }
+
+  bool exists() const { return whole().exists; }
+  int obstacles() const { return whole().obstacles; }
+
+  std::vector<geometry::Tetrahedron> tetrahedra() const {
+    const auto [p, q] = ring_.edge;
+    const std::vector<Index>& v = ring_.vertices;
+    std::vector<geometry::Tetrahedron> result;
+    std::vector<std::array<std::size_t, 2>> pending{{0, v.size() - 1}};
+    while (!pending.empty()) {
+      const auto [i, j] = pending.back();
+      pending.pop_back();
+      if (j == i + 1) continue;
+      const std::size_t k = best_[i][j].middle;
+      result.push_back({v[i], v[k], v[j], q});
+      result.push_back({v[i], v[j], v[k], p});
+      pending.push_back({i, k});
+      pending.push_back({k, j});
+    }
+    return result;
+  }
+
+ private:
+  /// The best triangulation of the vertices from one to another.
+  struct Best {
+    bool exists = true;
+    int obstacles = 0;
+    int kept = 0;
+    std::size_t middle = 0;  // the third vertex of the triangle at both ends
+  };
+
+  const Best& whole() const { return best_[0][ring_.vertices.size() - 1]; }
+
+  void add_face(Best& sum, const Triangle& face) const {
+    sum.obstacles += obstacles_.of_face(face);
+    sum.kept += flips_.kept_.has(face) ? 1 : 0;
+  }
+
+  void choose_middle(std::size_t i, std::size_t j) {
+    const auto [p, q] = ring_.edge;
+    const std::vector<Index>& v = ring_.vertices;
+    Best& best = best_[i][j];
+    best.exists = false;
+    for (std::size_t k = i + 1; k < j; ++k) {
+      const Best& left = best_[i][k];
+      const Best& right = best_[k][j];
+      if (!left.exists || !right.exists) continue;
+      Best sum{true, left.obstacles + right.obstacles, left.kept + right.kept, k};
+      const auto is_worse = [&] {
+        return sum.obstacles >= limit_ || (best.exists && sum.obstacles > best.obstacles);
+      };
+      if (is_worse() || flips_.side(v[i], v[k], v[j], q) <= 0 ||
+          flips_.side(v[i], v[k], v[j], p) >= 0) {
+        continue;
+      }
+      add_face(sum, sorted({v[i], v[k], v[j]}));
+      if (is_worse()) continue;
+      const bool is_better = !best.exists || std::pair(sum.obstacles, -sum.kept) <
+                                                 std::pair(best.obstacles, -best.kept);
+      if (is_better) best = sum;
+    }
+    const bool is_edge_of_ring = i == 0 && j + 1 == v.size() && !ring_.is_open();
+    if (!best.exists || is_edge_of_ring) return;
+    best.obstacles += obstacles_.of_edge(pair_of(v[i], v[j]));
+    for (const Index end : ring_.edge) add_face(best, sorted({v[i], v[j], end}));
+  }
+
+  const Flips& flips_;
+  const Ring& ring_;
+  const Obstacles& obstacles_;
+  int limit_;
+  std::array<std::array<Best, kLargestRing>, kLargestRing> best_{};
+};
+
+bool Flips::exchange_face(const MeshFace& face, const Obstacles& obstacles) {
+  const std::array<Index, 2> old_ones{face.tetrahedron,
+                                      mesh_.neighbour(face.tetrahedron, face.corner)};
+  if (old_ones[1] == kNone || kept_.has(face.vertices)) return false;
+  const auto [p, q, r] = inward_face(mesh_.tetrahedron(old_ones[0]), face.corner);
+  const Index u = mesh_.tetrahedron(old_ones[0])[face.corner];
+  const Index v = other_apex(mesh_.tetrahedron(old_ones[1]), face.vertices);
+  // The new edge passes through the face if the three new tetrahedra are positive.
+  if (side(v, u, p, q) <= 0 || side(v, u, q, r) <= 0 || side(v, u, r, p) <= 0) return false;
+  const int after = obstacles.of_edge(pair_of(u, v)) + obstacles.of_face(sorted({u, v, p})) +
+                    obstacles.of_face(sorted({u, v, q})) + obstacles.of_face(sorted({u, v, r}));
+  if (after >= obstacles.of_face(face.vertices)) return false;
+  const std::array<geometry::Tetrahedron, 3> new_ones{{{v, u, p, q}, {v, u, q, r}, {v, u, r, p}}};
+  mesh_.replace(old_ones, new_ones);
+  return true;
+}
+
+bool Flips::remove_edge(const MeshEdge& edge, const Obstacles& obstacles) {
+  if (kept_.has(edge.vertices)) return false;
+  const std::optional<Ring> ring = ring_of(edge);
+  if (!ring || ring->vertices.size() < 3) return false;
+  const auto [p, q] = edge.vertices;
+  int before = obstacles.of_edge(edge.vertices);
+  for (const Index vertex : ring->vertices) before += obstacles.of_face(sorted({p, q, vertex}));
+  if (before == 0) return false;
+  // An edge of the hull can only go where the faces of the hull beside it lie in one plane.
+  const bool is_flat_outside =
+      !ring->is_open() || side(p, q, ring->vertices.front(), ring->vertices.back()) == 0;
+  if (!is_flat_outside) return false;
+  const RingTriangulation triangulation(*this, *ring, obstacles, before);
+  if (!triangulation.exists() || triangulation.obstacles() >= before) return false;
+  mesh_.replace(ring->tetrahedra, triangulation.tetrahedra());
+  return true;
+}
+
+bool Flips::shrink_ring(const MeshEdge& edge, const Obstacles& obstacles) {
+  const std::optional<Ring> ring = ring_of(edge);
+  if (!ring) return false;
+  const Obstacles with_ring = obstacles.with_ring(edge.vertices);
+  for (std::size_t i = 0; i < ring->vertices.size(); ++i) {
+    const Index at = ring->tetrahedra[std::min(i, ring->tetrahedra.size() - 1)];
+    for (const Index end : edge.vertices) {
+      const MeshEdge spoke{pair_of(ring->vertices[i], end), at};
+      if (remove_edge(spoke, with_ring)) return true;
+    }
+  }
+  return false;
+}
+
+bool Flips::recover_edge(Index a, Index b) {
+  const Obstacles obstacles = Obstacles::of_segment(*this, a, b);
+  const auto exchange = [&](const MeshFace& face) { return exchange_face(face, obstacles); };
+  const auto remove = [&](const MeshEdge& edge) { return remove_edge(edge, obstacles); };
+  const auto shrink = [&](const MeshEdge& edge) { return shrink_ring(edge, obstacles); };
+  std::size_t shrinks_left = kShrinks;
+  while (tetrahedron_at(a, b) == kNone) {
+    const Gates found = gates(a, b);
+    if (is_exhausted() || cancellation_.is_due_and_wanted(found.around.size())) return false;
+    if (std::ranges::any_of(found.edges, remove) || std::ranges::any_of(found.faces, exchange) ||
+        std::ranges::any_of(found.around, remove)) {
+      continue;
+    }
+    if (shrinks_left-- == 0) return false;
+    if (!std::ranges::any_of(found.edges, shrink) && !std::ranges::any_of(found.around, shrink)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The edges of the tetrahedra at the sides of a triangle that pass through its inside.
+std::vector<Flips::MeshEdge> Flips::edges_through(const Triangle& triangle) {
+  std::vector<MeshEdge> edges;
+  for (const VertexPair& side : edges_of(triangle)) {
+    const Index t = tetrahedron_at(side[0], side[1]);
+    const std::optional<Ring> ring = t == kNone ? std::nullopt : ring_of({side, t});
+    if (!ring) continue;
+    for (const Index beside : ring->tetrahedra) {
+      const auto [x, y] = others(mesh_.tetrahedron(beside), side[0], side[1]);
+      if (crosses_face(x, y, triangle)) edges.push_back({pair_of(x, y), beside});
+    }
+  }
+  sort_once(edges);
+  return edges;
+}
+
+bool Flips::recover_face(const Triangle& triangle) {
+  const Obstacles obstacles = Obstacles::of_triangle(*this, triangle);
+  const auto remove = [&](const MeshEdge& edge) { return remove_edge(edge, obstacles); };
+  const auto shrink = [&](const MeshEdge& edge) { return shrink_ring(edge, obstacles); };
+  std::size_t shrinks_left = kShrinks;
+  while (!is_face(triangle)) {
+    const std::vector<MeshEdge> edges = edges_through(triangle);
+    if (is_exhausted() || cancellation_.is_due_and_wanted(edges.size())) return false;
+    if (std::ranges::any_of(edges, remove)) continue;
+    if (shrinks_left-- == 0 || !std::ranges::any_of(edges, shrink)) return false;
+  }
+  return true;
+}
+
+}  // namespace watertight::delaunay

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Makes edges and triangles part of a tetrahedralization by flips: exx that fill the same place.
+// Private to delaunay/.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "base/cancel.h"
+#include "delaunay/cancellation.h"
+#include "delaunay/recovery/tetrahedron_mesh.h"
+#include "geometry/point.h"
+
+namespace watertight::delaunay {
+
+/// The triangles of a boundary and their edges, which flips and fillings leave as they are.
+class KeptParts {
+ public:
+  /// Adds a triangle and its edges.
+  void add(const Triangle& sorted);
+  void add(const VertexPair& edge) { edges_.insert(key_of(edge)); }
+  /// Takes a triangle back, but none of its edges.
+  void remove(const Triangle& sorted) { faces_.erase(sorted); }
+  void remove(const VertexPair& edge) { edges_.erase(key_of(edge)); }
+  bool has(const Triangle& sorted) const { return faces_.contains(sorted); }
+  bool has(const VertexPair& edge) const { return edges_.contains(key_of(edge)); }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const Triangle& t) const;
+    std::size_t operator()(std::uint64_t key) const { return key * 0x9E3779B97F4A7C15ULL >> 16U; }
+  };
+  static std::uint64_t key_of(const VertexPair& edge) {
+    return std::uint64_t{edge[0]} << 32U | edge[1];
+  }
+
+  std::unordered_set<Triangle, Hash> faces_;
+  std::unordered_set<std::uint64_t, Hash> edges_;
+};
+
+/// Each flip lowers the number of faces and edges that are in the way of the edge or triangle that
+/// is wanted, or, a bounded number of times, leaves it as it is and shortens a ring. Every decision
+/// is exact. The result depends on the mesh and its numbering alone.
+/// Source: edge removal and 2-3 flips as in Joe, "Construction of three-dimensional
+/// improved-quality triangulations using local transformations" (1995), and Si, "TetGen" (2015),
+/// section 4.2. Departure: edge removal chooses among all triangulations of the ring, after
+/// Klincsek (1980).
+class Flips {
+ public:
+  /// Keeps references. At most `visits` tetrahedra are looked at in the stars of vertices and along
+  /// segments.
+  Flips(const std::vector<Point>& points, TetrahedronMesh& mesh, const KeptParts& kept,
+        std::size_t visits, const CancelPoll& is_cancelled)
+      : points_(points),
+        mesh_(mesh),
+        kept_(kept),
+        visits_left_(visits),
+        cancellation_(is_cancelled) {}
+
+  /// True if the visits have ended: answers may say "no" where "yes" is right.
+  bool is_exhausted() const { return visits_left_ == 0; }
+
+  /// Makes the segment between two vertices an edge. False if the flips end before, or the caller
+  /// cancels.
+  bool recover_edge(Index a, Index b);
+  /// Makes a triangle, all edges of which are there, a face. False if the flips end before, or the
+  /// caller cancels.
+  bool recover_face(const Triangle& triangle);
+  /// A tetrahedron that has both vertices, or kNone.
+  Index tetrahedron_at(Index a, Index b);
+  bool is_face(const Triangle& triangle);
+  /// The tetrahedra at a vertex. Valid until the next call of any function.
+  std::span<const Index> star(Index vertex);
+
+ private:
+  /// The tetrahedra around an edge pq: (p, q, vertices[i], vertices[i + 1]) are positive. At an
+  /// edge of the hull there is one vertex more than there are tetrahedra.
+  struct Ring {
+    VertexPair edge{};
+    std::vector<Index> vertices;
+    std::vector<Index> tetrahedra;
+    bool is_open() const { return vertices.size() > tetrahedra.size(); }
+  };
+  /// An edge of the mesh, and a tetrahedron that has it.
+  struct MeshEdge {
+    VertexPair vertices{};
+    Index tetrahedron = kNone;
+    bool operator==(const MeshEdge& other) const { return vertices == other.vertices; }
+    bool operator<(const MeshEdge& other) const { return vertices < other.vertices; }
+  };
+  /// A face of the mesh: that of a tetrahedron opposite to a corner.
+  struct MeshFace {
+    Triangle vertices{};  // sorted
+    Index tetrahedron = kNone;
+    std::size_t corner = 0;
+    bool operator==(const MeshFace& other) const { return vertices == other.vertices; }
+    bool operator<(const MeshFace& other) const { return vertices < other.vertices; }
+  };
+  /// The parts of the mesh through which a segment passes, sorted.
+  struct Gates {
+    std::vector<MeshEdge> edges;   // crossed between their ends
+    std::vector<MeshFace> faces;   // crossed in their inside
+    std::vector<MeshEdge> around;  // the edges of these faces
+  };
+  /// Counts how many faces and edges are in the way.
+  class Obstacles;
+  /// Triangles between the vertices of a ring.
+  class RingTriangulation;
+
+  int side(Index a, Index b, Index c, Index d) const;
+  std::optional<Ring> ring_of(const MeshEdge& edge) const;
+  bool crosses_face(Index a, Index b, const Triangle& face) const;
+  bool crosses_edge(Index a, Index b, const VertexPair& edge) const;
+  Gates gates(Index a, Index b);
+  std::vector<MeshEdge> edges_through(const Triangle& triangle);
+  /// Replaces the two tetrahedra at a face by three.
+  bool exchange_face(const MeshFace& face, const Obstacles& obstacles);
+  /// Replaces all tetrahedra around an edge.
+  bool remove_edge(const MeshEdge& edge, const Obstacles& obstacles);
+  /// Takes a tetrahedron from the ring of an edge by flips around the edges beside it.
+  bool shrink_ring(const MeshEdge& edge, const Obstacles& obstacles);
+
+  const std::vector<Point>& points_;
+  TetrahedronMesh& mesh_;
+  const KeptParts& kept_;
+  std::size_t visits_left_;
+  Cancellation cancellation_;
+  std::vector<Index> star_;
+  std::vector<std::uint32_t> mark_of_;
+  std::uint32_t mark_ = 0;
+};
+
+}  // namespace watertight::delaunay

@@ -2,6 +2,7 @@
 #include "delaunay/recovery/flips.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "geometry/predicates/predicates.h"
@@ -345,6 +346,49 @@ class Flips::RingTriangulation {
   int limit_;
   std::array<std::array<Best, kLargestRing>, kLargestRing> best_{};
 };
+
+std::array<double, 2> Flips::middle_of_crossings(Index a, Index b) {
+  const Gates crossed = gates(a, b);
+  std::vector<double> places;
+  const auto add = [&](double before, double after) {
+    const double sum = before + after;
+    if (sum > 0 && std::isfinite(sum)) places.push_back(before / sum);
+  };
+  for (const MeshFace& face : crossed.faces) {
+    const auto [p, q, r] = face.vertices;
+    add(rounded_volume(p, q, r, a), rounded_volume(p, q, r, b));
+  }
+  for (const MeshEdge& edge : crossed.edges) {
+    const auto [p, q] = edge.vertices;
+    add(rounded_area(p, q, a), rounded_area(p, q, b));
+  }
+  std::sort(places.begin(), places.end());
+  const std::size_t middle = places.size() / 2;
+  return {middle == 0 ? 0 : places[middle - 1],
+          middle + 1 < places.size() ? places[middle + 1] : 1};
+}
+
+/// Six times the volume between four points, without its sign.
+double Flips::rounded_volume(Index a, Index b, Index c, Index d) const {
+  const std::array<double, 3> u = rounded_product(a, b, c);
+  const Point& from = points_[a];
+  const Point& to = points_[d];
+  return std::abs(u[0] * (to.x - from.x) + u[1] * (to.y - from.y) + u[2] * (to.z - from.z));
+}
+
+/// Twice the area between three points.
+double Flips::rounded_area(Index a, Index b, Index c) const {
+  const auto [x, y, z] = rounded_product(a, b, c);
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+/// The cross product of b - a and c - a.
+std::array<double, 3> Flips::rounded_product(Index a, Index b, Index c) const {
+  const Point& o = points_[a];
+  const Point u{points_[b].x - o.x, points_[b].y - o.y, points_[b].z - o.z};
+  const Point v{points_[c].x - o.x, points_[c].y - o.y, points_[c].z - o.z};
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
 
 bool Flips::exchange_face(const MeshFace& face, const Obstacles& obstacles) {
   const std::array<Index, 2> old_ones{face.tetrahedron,

@@ -4,6 +4,7 @@
 // Private to delaunay/.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -70,6 +71,10 @@ class Flips {
   /// Makes a triangle, all edges of which are there, a face. False if the flips end before, or the
   /// caller cancels.
   bool recover_face(const Triangle& triangle);
+  /// The part of a missing edge, as parameters from `a` (0) to `b` (1), that holds the middle one
+  /// of the places where it crosses faces and edges, up to the places before and after that one.
+  /// Rounded.
+  std::array<double, 2> middle_of_crossings(Index a, Index b);
   /// A tetrahedron that has both vertices, or kNone.
   Index tetrahedron_at(Index a, Index b);
   bool is_face(const Triangle& triangle);
@@ -112,6 +117,9 @@ class Flips {
   class RingTriangulation;
 
   int side(Index a, Index b, Index c, Index d) const;
+  double rounded_volume(Index a, Index b, Index c, Index d) const;
+  double rounded_area(Index a, Index b, Index c) const;
+  std::array<double, 3> rounded_product(Index a, Index b, Index c) const;
   std::optional<Ring> ring_of(const MeshEdge& edge) const;
   bool crosses_face(Index a, Index b, const Triangle& face) const;
   bool crosses_edge(Index a, Index b, const VertexPair& edge) const;

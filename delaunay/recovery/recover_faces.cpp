@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Missing edges, then missing triangles are made by flips. Where flips end, an edge of the triangle
-// is divided in its middle, and flips go on with the parts. What is left is searched for: the
-// tetrahedra that hold a point of the inside of a missing triangle, or of the inside of an edge
-// that is missing too, are taken away, and the cavity is filled anew with the triangle in it.
-// Triangles that are faces already stay faces. All decisions about points are exact; where a
-// Steiner point lies is computed by additions and divisions by 2 and 4 only, so that it is the same
-// on every machine, and a point on an edge lies on it exactly.
+// is divided in the middle of the faces and edges that it crosses, and flips go on with the parts.
+// What is left is searched for: the tetrahedra that hold a point of the inside of a missing
+// triangle, or of the inside of an edge that is missing too, are taken away, and the cavity is
+// filled anew with the triangle in it. Triangles that are faces already stay faces. All decisions
+// about points are exact; a Steiner point on an edge lies on it exactly, at a place that is a
+// fraction of a power of two. Where else one lies is computed by additions and divisions by 4 only,
+// so that it is the same on every machine.
 #include "delaunay/recovery/recover_faces.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -37,11 +39,15 @@ constexpr std::size_t kFewVisits = 65'536;
 /// The most times that a cavity grows.
 constexpr int kGrowths = 8;
 /// The most rounds, each of which divides an edge of each missing triangle.
-constexpr std::size_t kRounds = 8;
+constexpr std::size_t kRounds = 16;
+/// The most rounds in a row after which no fewer triangles are missing than before.
+constexpr std::size_t kIdleRounds = 3;
 /// The rounds of flips alone; the search begins after them.
-constexpr std::size_t kRoundsOfFlips = 2;
+constexpr std::size_t kRoundsOfFlips = 3;
 /// The most parts of triangles for each triangle of the boundary.
 constexpr std::size_t kPartsPerTriangle = 4;
+/// The most bits of the place where an edge is divided.
+constexpr int kPlaceBits = 16;
 /// The number of triangles after which the search ends if it did not find half of them.
 constexpr std::size_t kSample = 256;
 
@@ -74,9 +80,16 @@ class Recovery {
   Result<RecoveredFaces> run() {
     const std::size_t most_parts = 64 + kPartsPerTriangle * triangles_.size();
     bool is_cancelled = !flip();
-    for (std::size_t round = 0; round < kRounds && !is_cancelled && is_promising(); ++round) {
-      if (round >= kRoundsOfFlips) is_cancelled = !search();
-      if (is_cancelled || missing_.empty() || triangles_.size() > most_parts) break;
+    std::size_t least_missing = missing_.size() + 1;
+    std::size_t idle_rounds = 0;
+    for (std::size_t round = 0; round < kRounds && !is_cancelled; ++round) {
+      if (round >= kRoundsOfFlips && !is_search_over_) is_cancelled = !search();
+      idle_rounds = missing_.size() < least_missing ? 0 : idle_rounds + 1;
+      least_missing = std::min(least_missing, missing_.size());
+      if (is_cancelled || missing_.empty() || idle_rounds == kIdleRounds ||
+          triangles_.size() > most_parts || flips_.is_exhausted()) {
+        break;
+      }
       divide_missing();
       is_cancelled = !flip();
     }
@@ -95,8 +108,6 @@ class Recovery {
     std::vector<Index> triangles;  // all that have it
   };
 
-  bool is_promising() const { return !missing_.empty() && !is_failing_ && !flips_.is_exhausted(); }
-
   RecoveredFaces result() {
     RecoveredFaces result;
     for (const Wanted& wanted : triangles_) {
@@ -114,11 +125,11 @@ class Recovery {
   /// Searches once for each missing triangle. False if the caller cancels.
   bool search() {
     std::size_t failures = 0;
-    for (std::size_t i = 0; i < missing_.size() && !is_failing_; ++i) {
+    for (std::size_t i = 0; i < missing_.size() && !is_search_over_; ++i) {
       if (cancellation_.is_wanted()) return false;
       if (!put_in(triangles_[missing_[i]].vertices)) ++failures;
       const bool are_most_lost = i + 1 >= kSample && failures > (i + 1) / 2;
-      is_failing_ = are_most_lost || visits_left_ == 0 || steps_left_ == 0;
+      is_search_over_ = are_most_lost || visits_left_ == 0 || steps_left_ == 0;
     }
     ++searches_;
     forget_found();
@@ -196,27 +207,27 @@ class Recovery {
     }
     std::sort(missing_.begin(), missing_.end());
     for (auto& [edge, division] : divisions) {
-      const std::optional<Index> middle = put_in_middle(edge, division.missing);
-      if (!middle) continue;
+      const std::optional<Index> vertex = put_on_edge(edge, division.missing);
+      if (!vertex) continue;
       for (const Index i : std::exchange(division.triangles, {})) {
-        divide_triangle(i, edge, *middle, divisions);
+        divide_triangle(i, edge, *vertex, divisions);
       }
     }
     forget_found();
   }
 
-  /// Divides a triangle at the middle of an edge: the first part takes its place.
-  void divide_triangle(Index i, const VertexPair& edge, Index middle,
+  /// Divides a triangle at a vertex on one of its edges: the first part takes its place.
+  void divide_triangle(Index i, const VertexPair& edge, Index vertex,
                        std::map<VertexPair, Division>& divisions) {
     const Triangle whole = triangles_[i].vertices;
-    const auto with_middle = [&](Index replaced) {
+    const auto with_vertex = [&](Index replaced) {
       Triangle part = whole;
-      std::replace(part.begin(), part.end(), replaced, middle);
+      std::replace(part.begin(), part.end(), replaced, vertex);
       return sorted(part);
     };
     const auto second = static_cast<Index>(triangles_.size());
-    triangles_.push_back({with_middle(edge[0]), triangles_[i].source});
-    triangles_[i].vertices = with_middle(edge[1]);
+    triangles_.push_back({with_vertex(edge[0]), triangles_[i].source});
+    triangles_[i].vertices = with_vertex(edge[1]);
     wanted_.remove(whole);
     wanted_.add(triangles_[i].vertices);
     wanted_.add(triangles_[second].vertices);
@@ -231,20 +242,42 @@ class Recovery {
     }
   }
 
-  /// The point in the middle of an edge, if doubles hold it.
-  std::optional<Point> middle(Index a, Index b) const {
+  /// A point between two vertices whose place, counted in halves, quarters and so on of the edge,
+  /// has the fewest bits. The places are within the given ones if doubles hold such a point, else
+  /// it is the middle; none if they do not hold this one either.
+  std::optional<Point> point_between(Index a, Index b, const std::array<double, 2>& places) const {
+    const double margin = (places[1] - places[0]) / 8;
+    const double least = places[0] + margin;
+    const double most = places[1] - margin;
+    double part = 1;
+    for (int bits = 1; bits <= kPlaceBits; ++bits) {
+      part /= 2;
+      const double place = std::ceil(least / part) * part;
+      if (place > most) continue;
+      const std::optional<Point> point = exact_point(a, b, place);
+      if (point) return point;
+    }
+    return exact_point(a, b, 0.5);
+  }
+
+  /// The point at a place of an edge, if doubles hold it.
+  std::optional<Point> exact_point(Index a, Index b, double place) const {
     const Point& p = points_[a];
     const Point& q = points_[b];
-    const Point m{p.x / 2 + q.x / 2, p.y / 2 + q.y / 2, p.z / 2 + q.z / 2};
+    const Point m{p.x * (1 - place) + q.x * place, p.y * (1 - place) + q.y * place,
+                  p.z * (1 - place) + q.z * place};
     if (m == p || m == q || !geometry::is_on_segment(p, q, m)) return std::nullopt;
     return m;
   }
 
-  /// Puts a vertex in the middle of an edge of a missing triangle, with edges to all corners of the
-  /// tetrahedra that hold it. None if doubles have no such point.
-  std::optional<Index> put_in_middle(const VertexPair& edge, Index missing) {
+  /// Puts a vertex on an edge of a missing triangle, with edges to all corners of the tetrahedra
+  /// that hold it: in the middle of what the edge crosses, so that each part crosses less. None if
+  /// doubles have no such point.
+  std::optional<Index> put_on_edge(const VertexPair& edge, Index missing) {
     const auto [a, b] = edge;
-    const std::optional<Point> point = middle(a, b);
+    const bool is_missing = !is_edge(a, b);
+    const std::optional<Point> point = point_between(
+        a, b, is_missing ? flips_.middle_of_crossings(a, b) : std::array<double, 2>{0, 1});
     if (!point) return std::nullopt;
     std::vector<Index> around = star(a);
     std::erase_if(around, [&, end = b](Index t) { return !has_vertex(mesh_.tetrahedron(t), end); });
@@ -505,10 +538,10 @@ class Recovery {
     return filling;
   }
 
-  std::vector<Point> points_;  // the input's, the apex, and the points added
-  Index apex_;                 // of cones over faces of the hull
-  std::size_t searches_ = 0;   // that ended
-  bool is_failing_ = false;    // the search has found too little
+  std::vector<Point> points_;    // the input's, the apex, and the points added
+  Index apex_;                   // of cones over faces of the hull
+  std::size_t searches_ = 0;     // that ended
+  bool is_search_over_ = false;  // the search has found too little
   TetrahedronMesh mesh_;
   std::vector<Index> missing_;  // numbers of triangles that are no faces
   std::vector<Wanted> triangles_;

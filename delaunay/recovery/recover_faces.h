@@ -25,12 +25,12 @@ struct RecoveredFaces {
 
 /// Requires positive tetrahedra that fill the convex hull of `points` once, triangles that meet
 /// in common vertices and edges only, and the numbers of those that are no faces. Returns
-/// tetrahedra that fill the hull too. The search is bounded by a number of steps, in proportion to
-/// the number of triangles: a triangle for which it finds nothing stays missing, and when more than
-/// half do it ends early. Same input, same result. Errors: cancelled. Cost: some 0.01 ms for each
-/// missing triangle where flips find it, and at most some 0.2 ms for each triangle of the boundary.
-/// Source: flips and Steiner points as in Si, "TetGen" (2015), section 4. Departures: points on
-/// edges lie in their middle, exactly; edge removal chooses the best triangulation of a ring.
+/// tetrahedra that fill the hull too. All is bounded by numbers of steps, in proportion to the
+/// number of triangles: a triangle for which nothing is found stays missing. Same input, same
+/// result. Errors: cancelled. Cost: some 0.01 ms for each missing triangle where flips find it, and
+/// at most some 0.2 ms for each triangle of the boundary. Source: flips and Steiner points as in
+/// Si, "TetGen" (2015), section 4. Departures: a point on an edge lies in the middle of what the
+/// edge crosses, exactly; edge removal chooses the best triangulation of a ring.
 Result<RecoveredFaces> recover_faces(std::span<const Point> points,
                                      std::vector<geometry::Tetrahedron> tetrahedra,
                                      std::span<const Triangle> triangles,

@@ -168,3 +168,13 @@ TEST_CASE("Chazelle's polyhedron with 20 notches is undecided in too little time
   CHECK(report.verdict != Verdict::invalid);
   CHECK((report.verdict == Verdict::undecided) == !report.undecided_reason.empty());
 }
+
+TEST_CASE("polyhedra of Chazelle are proven without an engine") {
+  for (const int notches : {1, 2, 3, 5}) {
+    INFO(notches);
+    const Report report = certify(solid_of({chazelle(notches)}), nullptr, {}).report;
+    CHECK(report.verdict == Verdict::valid);
+    REQUIRE_FALSE(report.attempts.empty());
+    CHECK(report.attempts.back().rung == delaunay::Rung::recovered);
+  }
+}

@@ -36,7 +36,7 @@ CREATE FUNCTION chazelle(n int) RETURNS bytea LANGUAGE sql IMMUTABLE AS $$
       polygon((ARRAY[0, 0, h, 0, s, h] || left_side)::float8[]),
       polygon((ARRAY[s, s, h, s, 0, h] || right_side)::float8[])]) FROM size, zigzag)
   SELECT surface(array_agg(f)) FROM facets $$;
-CREATE TABLE hard AS SELECT chazelle(5) AS ewkb;
+CREATE TABLE hard AS SELECT chazelle(20) AS ewkb;
 SELECT wt_is_valid(ewkb), wt_info(wt_encode(ewkb))->>'vertices' AS vertices FROM hard;
 SELECT wt_encode(wt_decode(wt_encode(ewkb))) = wt_encode(ewkb) AS stable FROM hard;
 

@@ -328,14 +328,14 @@ class Climb {
     }
   }
 
-  /// Makes the canonical Delaunay tetrahedralization and the facets' triangles that follow it.
-  /// False, with a conclusion, if that is not possible.
-  bool make_delaunay() {
+  /// Makes the canonical Delaunay tetrahedralization and the facets' triangles that follow it, but
+  /// for facets that keep their canonical ones. False, with a conclusion, if that is not possible.
+  bool make_delaunay(const std::vector<bool>& is_kept) {
     Result<CanonicalDelaunay> delaunay = canonical_delaunay(
         solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count(), options_.cancel);
     if (!delaunay) return conclude(delaunay.error()), false;
     Result<FollowingTriangles> followed =
-        follow_delaunay(solid_, triangles(), *delaunay, is_kept_, options_.cancel);
+        follow_delaunay(solid_, triangles(), *delaunay, is_kept, options_.cancel);
     if (!followed) return conclude(followed.error()), false;
     following_ = *std::move(followed);
     delaunay_tetrahedra_ = std::move(delaunay->tetrahedra);
@@ -349,7 +349,7 @@ class Climb {
   }
 
   void try_delaunay() {
-    if (!make_delaunay()) return;
+    if (!make_delaunay(is_kept_)) return;
     if (following_->missing_total > 0) {
       return conclude_missing(following_->missing_total, "Delaunay faces");
     }
@@ -358,8 +358,33 @@ class Climb {
               Rung::delaunay);
   }
 
+  /// Adds facets two of which follow one Delaunay face to those that keep their canonical
+  /// triangles, which differ. False if there are none to add.
+  bool part_equal_triangles(std::vector<bool>& is_kept) const {
+    std::vector<std::pair<Triangle, Index>> faces;
+    for (std::size_t t = 0; t < following_->triangles.size(); ++t) {
+      faces.push_back({following_->triangles[t], following_->facet_of[t]});
+      std::sort(faces.back().first.begin(), faces.back().first.end());
+    }
+    std::sort(faces.begin(), faces.end());
+    is_kept.resize(solid_.facet_count());
+    bool has_changed = false;
+    for (std::size_t i = 1; i < faces.size(); ++i) {
+      if (faces[i - 1].first != faces[i].first) continue;
+      for (const Index facet : {faces[i - 1].second, faces[i].second}) {
+        has_changed = has_changed || !is_kept[facet];
+        is_kept[facet] = true;
+      }
+    }
+    return has_changed;
+  }
+
   void try_recovered() {
-    if (!following_ && !make_delaunay()) return;
+    if (!following_ && !make_delaunay(is_kept_)) return;
+    std::vector<bool> is_kept = is_kept_;
+    while (part_equal_triangles(is_kept)) {
+      if (!make_delaunay(is_kept)) return;
+    }
     std::vector<Index> missing;
     for (Index i = 0; i < following_->triangles.size(); ++i) {
       if (following_->delaunay_face[i] == kNone) missing.push_back(i);

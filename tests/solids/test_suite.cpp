@@ -178,3 +178,13 @@ TEST_CASE("polyhedra of Chazelle are proven without an engine") {
     CHECK(report.attempts.back().rung == delaunay::Rung::recovered);
   }
 }
+
+TEST_CASE("facets that could follow the same Delaunay face are proven without an engine") {
+  const Solid solid = read_solid(
+      test::read_text(WATERTIGHT_TEST_DATA "/solids/facets_that_share_a_triangle.city.json"),
+      Format::city_json);
+  const Report report = certify(solid, nullptr, {}).report;
+  CHECK(report.verdict == Verdict::valid);
+  REQUIRE_FALSE(report.attempts.empty());
+  CHECK(report.attempts.back().rung == delaunay::Rung::recovered);
+}

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -21,6 +20,7 @@
 #include "delaunay/recovery/coordinate_order.h"
 #include "delaunay/recovery/fill_cavity.h"
 #include "delaunay/recovery/flips.h"
+#include "delaunay/recovery/point_between.h"
 #include "delaunay/recovery/section.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/predicates/predicates.h"
@@ -46,8 +46,6 @@ constexpr std::size_t kIdleRounds = 3;
 constexpr std::size_t kRoundsOfFlips = 3;
 /// The most parts of triangles for each triangle of the boundary.
 constexpr std::size_t kPartsPerTriangle = 4;
-/// The most bits of the place where an edge is divided.
-constexpr int kPlaceBits = 16;
 /// The number of triangles after which the search ends if it did not find half of them.
 constexpr std::size_t kSample = 256;
 
@@ -242,42 +240,15 @@ class Recovery {
     }
   }
 
-  /// A point between two vertices whose place, counted in halves, quarters and so on of the edge,
-  /// has the fewest bits. The places are within the given ones if doubles hold such a point, else
-  /// it is the middle; none if they do not hold this one either.
-  std::optional<Point> point_between(Index a, Index b, const std::array<double, 2>& places) const {
-    const double margin = (places[1] - places[0]) / 8;
-    const double least = places[0] + margin;
-    const double most = places[1] - margin;
-    double part = 1;
-    for (int bits = 1; bits <= kPlaceBits; ++bits) {
-      part /= 2;
-      const double place = std::ceil(least / part) * part;
-      if (place > most) continue;
-      const std::optional<Point> point = exact_point(a, b, place);
-      if (point) return point;
-    }
-    return exact_point(a, b, 0.5);
-  }
-
-  /// The point at a place of an edge, if doubles hold it.
-  std::optional<Point> exact_point(Index a, Index b, double place) const {
-    const Point& p = points_[a];
-    const Point& q = points_[b];
-    const Point m{p.x * (1 - place) + q.x * place, p.y * (1 - place) + q.y * place,
-                  p.z * (1 - place) + q.z * place};
-    if (m == p || m == q || !geometry::is_on_segment(p, q, m)) return std::nullopt;
-    return m;
-  }
-
   /// Puts a vertex on an edge of a missing triangle, with edges to all corners of the tetrahedra
   /// that hold it: in the middle of what the edge crosses, so that each part crosses less. None if
   /// doubles have no such point.
   std::optional<Index> put_on_edge(const VertexPair& edge, Index missing) {
     const auto [a, b] = edge;
     const bool is_missing = !is_edge(a, b);
-    const std::optional<Point> point = point_between(
-        a, b, is_missing ? flips_.middle_of_crossings(a, b) : std::array<double, 2>{0, 1});
+    const std::array<double, 2> places =
+        is_missing ? flips_.middle_of_crossings(a, b) : std::array<double, 2>{0, 1};
+    const std::optional<Point> point = point_between(points_[a], points_[b], places);
     if (!point) return std::nullopt;
     std::vector<Index> around = star(a);
     std::erase_if(around, [&, end = b](Index t) { return !has_vertex(mesh_.tetrahedron(t), end); });

@@ -15,6 +15,7 @@
 #include "delaunay/ladder.h"
 #include "delaunay/recovery/fill_cavity.h"
 #include "delaunay/recovery/flips.h"
+#include "delaunay/recovery/point_between.h"
 #include "delaunay/recovery/recover_faces.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/solid.h"
@@ -208,6 +209,23 @@ TEST_CASE("a flip makes a face through which an edge passes") {
   CHECK(flips.flips.recover_face({0, 1, 2}));
   CHECK(flips.flips.tetrahedron_at(3, 4) == kNone);
   CHECK(flips.tetrahedra() == 2);
+}
+
+TEST_CASE("an edge is divided at the place with the fewest bits that is exact") {
+  const auto at = [](const Point& q, double least, double most) {
+    return delaunay::point_between({0, 0, 0}, q, {least, most});
+  };
+  CHECK(at({8, 16, 24}, 0, 1) == Point{4, 8, 12});
+  CHECK(at({8, 16, 24}, 0, 0.4) == Point{2, 4, 6});
+  CHECK(at({8, 16, 24}, 0.5, 1) == Point{6, 12, 18});
+  CHECK(at({8, 16, 24}, 0.55, 0.72) == Point{5, 10, 15});
+  // Places of up to 16 bits do not part these two.
+  CHECK(at({8, 16, 24}, 0.1, 0.100001) == Point{4, 8, 12});
+  // Doubles hold the middle, but no quarter.
+  CHECK(delaunay::point_between({0x1p52, 0, 0}, {0x1p52 + 2, 2, 6}, {0, 0.3}) ==
+        Point{0x1p52 + 1, 1, 3});
+  // They do not hold this middle.
+  CHECK_FALSE(delaunay::point_between({0x1p52, 0, 1}, {0x1p52 + 1, 2, 2}, {0, 1}).has_value());
 }
 
 /// Six times the volume of tetrahedra on integers, all of which are positive.

@@ -358,31 +358,11 @@ class Climb {
               Rung::delaunay);
   }
 
-  /// Adds facets two of which follow one Delaunay face to those that keep their canonical
-  /// triangles, which differ. False if there are none to add.
-  bool part_equal_triangles(std::vector<bool>& is_kept) const {
-    std::vector<std::pair<Triangle, Index>> faces;
-    for (std::size_t t = 0; t < following_->triangles.size(); ++t) {
-      faces.push_back({following_->triangles[t], following_->facet_of[t]});
-      std::sort(faces.back().first.begin(), faces.back().first.end());
-    }
-    std::sort(faces.begin(), faces.end());
-    is_kept.resize(solid_.facet_count());
-    bool has_changed = false;
-    for (std::size_t i = 1; i < faces.size(); ++i) {
-      if (faces[i - 1].first != faces[i].first) continue;
-      for (const Index facet : {faces[i - 1].second, faces[i].second}) {
-        has_changed = has_changed || !is_kept[facet];
-        is_kept[facet] = true;
-      }
-    }
-    return has_changed;
-  }
-
   void try_recovered() {
     if (!following_ && !make_delaunay(is_kept_)) return;
     std::vector<bool> is_kept = is_kept_;
-    while (part_equal_triangles(is_kept)) {
+    is_kept.resize(solid_.facet_count());
+    while (part_equal_triangles(following_->triangles, following_->facet_of, is_kept)) {
       if (!make_delaunay(is_kept)) return;
     }
     std::vector<Index> missing;

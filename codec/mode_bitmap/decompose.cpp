@@ -49,25 +49,6 @@ void collect_triangles(const delaunay::FollowingTriangles& following,
   }
 }
 
-/// Adds each facet that has a triangle in common with another facet to `takes_canonical`. Returns
-/// false if no facet is added.
-bool part_equal_triangles(const BoundaryComplex& complex, std::vector<bool>& takes_canonical) {
-  std::vector<std::pair<Triangle, Index>> uses;
-  for (std::size_t i = 0; i < complex.triangles.size(); ++i) {
-    uses.emplace_back(complex.triangles[i], complex.facet_of[i]);
-  }
-  std::sort(uses.begin(), uses.end());
-  bool has_changed = false;
-  for (std::size_t i = 1; i < uses.size(); ++i) {
-    if (uses[i].first != uses[i - 1].first) continue;
-    for (const Index facet : {uses[i - 1].second, uses[i].second}) {
-      has_changed = has_changed || !takes_canonical[facet];
-      takes_canonical[facet] = true;
-    }
-  }
-  return has_changed;
-}
-
 Result<BoundaryComplex> follow(const geometry::CanonicalSolid& canonical) {
   const Solid& solid = canonical.boundary.solid();
   BoundaryComplex complex;
@@ -94,7 +75,7 @@ Result<BoundaryComplex> follow(const geometry::CanonicalSolid& canonical) {
   std::vector<bool> takes_canonical(solid.facet_count(), false);
   do {
     collect_triangles(following, facets, takes_canonical, complex);
-  } while (part_equal_triangles(complex, takes_canonical));
+  } while (delaunay::part_equal_triangles(complex.triangles, complex.facet_of, takes_canonical));
   complex.delaunay = std::move(delaunay).value();
   return complex;
 }

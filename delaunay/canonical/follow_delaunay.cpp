@@ -372,4 +372,24 @@ FollowingTriangles follow_delaunay(const Solid& merged, const tessellate::FacetT
   return *std::move(result);
 }
 
+bool part_equal_triangles(std::span<const Triangle> triangles, std::span<const Index> facet_of,
+                          std::vector<bool>& is_kept) {
+  std::vector<std::pair<Triangle, Index>> uses;
+  uses.reserve(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    uses.emplace_back(triangles[i], facet_of[i]);
+    std::sort(uses.back().first.begin(), uses.back().first.end());
+  }
+  std::sort(uses.begin(), uses.end());
+  bool has_changed = false;
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    if (uses[i].first != uses[i - 1].first) continue;
+    for (const Index facet : {uses[i - 1].second, uses[i].second}) {
+      has_changed = has_changed || !is_kept[facet];
+      is_kept[facet] = true;
+    }
+  }
+  return has_changed;
+}
+
 }  // namespace watertight::delaunay

@@ -7,6 +7,7 @@
 // marks and the list of unrecovered faces say which triangles were taken.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/cancel.h"
@@ -54,5 +55,11 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged,
                                            const CanonicalDelaunay& delaunay,
                                            const std::vector<bool>& is_kept,
                                            const CancelPoll& is_cancelled);
+
+/// Two facets that are not planar may follow the same Delaunay face; their canonical triangles
+/// differ wherever the solid is valid. Adds each facet that has a triangle in common with another
+/// one to `is_kept` (an entry for each facet). False if there is none to add. Cost: O(n log n).
+bool part_equal_triangles(std::span<const Triangle> triangles, std::span<const Index> facet_of,
+                          std::vector<bool>& is_kept);
 
 }  // namespace watertight::delaunay

@@ -212,8 +212,8 @@ bool Flips::crosses_edge(Index a, Index b, const VertexPair& edge) const {
 }
 
 /// Looks for them from the tetrahedra at `a` on, through each one that is found.
-Flips::Gates Flips::gates(Index a, Index b) {
-  Gates gates;
+Flips::Crossings Flips::crossings(Index a, Index b) {
+  Crossings found;
   const std::span<const Index> first = star(a);
   std::vector<Index> pending(first.begin(), first.end());
   ++mark_;
@@ -232,7 +232,7 @@ Flips::Gates Flips::gates(Index a, Index b) {
         turns[j][i] = -turns[i][j];
         const MeshEdge edge{pair_of(corners[i], corners[j]), t};
         if (turns[i][j] != 0 || !crosses_edge(a, b, edge.vertices)) continue;
-        gates.edges.push_back(edge);
+        found.edges.push_back(edge);
         const std::optional<Ring> ring = ring_of(edge);
         if (ring) pending.insert(pending.end(), ring->tetrahedra.begin(), ring->tetrahedra.end());
       }
@@ -248,16 +248,16 @@ Flips::Gates Flips::gates(Index a, Index b) {
           side(face[0], face[1], face[2], a) * side(face[0], face[1], face[2], b) >= 0) {
         continue;
       }
-      gates.faces.push_back({face, t, corner});
-      for (const VertexPair& edge : edges_of(face)) gates.around.push_back({edge, t});
+      found.faces.push_back({face, t, corner});
+      for (const VertexPair& edge : edges_of(face)) found.around.push_back({edge, t});
       const Index other = mesh_.neighbour(t, corner);
       if (other != kNone) pending.push_back(other);
     }
   }
-  sort_once(gates.edges);
-  sort_once(gates.faces);
-  sort_once(gates.around);
-  return gates;
+  sort_once(found.edges);
+  sort_once(found.faces);
+  sort_once(found.around);
+  return found;
 }
 
 /// The triangulation of a ring that leaves the fewest obstacles, and among those makes the most
@@ -348,7 +348,7 @@ class Flips::RingTriangulation {
 };
 
 std::array<double, 2> Flips::middle_of_crossings(Index a, Index b) {
-  const Gates crossed = gates(a, b);
+  const Crossings crossed = crossings(a, b);
   std::vector<double> places;
   const auto add = [&](double before, double after) {
     const double sum = before + after;
@@ -446,7 +446,7 @@ bool Flips::recover_edge(Index a, Index b) {
   const auto shrink = [&](const MeshEdge& edge) { return shrink_ring(edge, obstacles); };
   std::size_t shrinks_left = kShrinks;
   while (tetrahedron_at(a, b) == kNone) {
-    const Gates found = gates(a, b);
+    const Crossings found = crossings(a, b);
     if (is_exhausted() || cancellation_.is_due_and_wanted(found.around.size())) return false;
     if (std::ranges::any_of(found.edges, remove) || std::ranges::any_of(found.faces, exchange) ||
         std::ranges::any_of(found.around, remove)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Makes edges and triangles part of a tetrahedralization by flips: exx that fill the same place.
-// Private to delaunay/.
+// Makes edges and triangles part of a tetrahedralization by flips: exchanges of the tetrahedra at a
+// face or around an edge for others that fill the same place. Private to delaunay/.
 #pragma once
 
 #include <array>
@@ -106,7 +106,7 @@ class Flips {
     bool operator<(const MeshFace& other) const { return vertices < other.vertices; }
   };
   /// The parts of the mesh through which a segment passes, sorted.
-  struct Gates {
+  struct Crossings {
     std::vector<MeshEdge> edges;   // crossed between their ends
     std::vector<MeshFace> faces;   // crossed in their inside
     std::vector<MeshEdge> around;  // the edges of these faces
@@ -123,7 +123,7 @@ class Flips {
   std::optional<Ring> ring_of(const MeshEdge& edge) const;
   bool crosses_face(Index a, Index b, const Triangle& face) const;
   bool crosses_edge(Index a, Index b, const VertexPair& edge) const;
-  Gates gates(Index a, Index b);
+  Crossings crossings(Index a, Index b);
   std::vector<MeshEdge> edges_through(const Triangle& triangle);
   /// Replaces the two tetrahedra at a face by three.
   bool exchange_face(const MeshFace& face, const Obstacles& obstacles);

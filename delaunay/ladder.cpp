@@ -21,6 +21,7 @@
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/cdt_frames.h"
 #include "delaunay/cdt_statistics.h"
+#include "delaunay/constrained/constrained_delaunay.h"
 #include "delaunay/recovery/recover_faces.h"
 #include "tessellate/flatness.h"
 #include "workers/worker_pool.h"
@@ -373,11 +374,7 @@ class Climb {
         recover_faces(solid_.vertices(), std::exchange(delaunay_tetrahedra_, {}),
                       following_->triangles, missing, options_.cancel);
     if (!recovered) return conclude(recovered.error());
-    if (recovered->missing > 0) {
-      conclude_missing(recovered->missing, "recovered");
-      following_.reset();
-      return;
-    }
+    if (recovered->missing > 0) return try_constrained();
     const FollowingTriangles following = *std::exchange(following_, std::nullopt);
     following_.emplace();
     for (std::size_t i = 0; i < recovered->triangles.size(); ++i) {
@@ -385,6 +382,23 @@ class Climb {
       following_->facet_of.push_back(following.facet_of[recovered->source[i]]);
     }
     judge_own(std::move(recovered->points), std::move(recovered->tetrahedra), Rung::recovered);
+  }
+
+  /// The second half of rung 1, for what flips do not recover.
+  void try_constrained() {
+    following_.reset();
+    Result<ConstrainedDelaunay> constrained =
+        constrained_delaunay(solid_, triangles(), taken_apart(), options_.cancel);
+    if (!constrained) return conclude(constrained.error());
+    following_.emplace();
+    following_->triangles = std::move(constrained->triangles);
+    following_->facet_of = std::move(constrained->facet_of);
+    if (constrained->missing > 0) {
+      conclude_missing(constrained->missing, "recovered");
+      following_.reset();
+      return;
+    }
+    judge_own(std::move(constrained->points), std::move(constrained->tetrahedra), Rung::recovered);
   }
 
   /// Judges tetrahedra of which all following triangles are faces.

@@ -141,7 +141,7 @@ void prove(const Solid& solid, const std::string& name, const Arguments& argumen
   if (!own.certified) {
     std::printf("not proven: %s: %zu vertices, %s\n", name.c_str(),
                 static_cast<std::size_t>(solid.vertex_count()),
-                own.report.attempts.back().outcome.c_str());
+                own.report.undecided_reason.c_str());
     std::fflush(stdout);
   }
   if (!arguments.asks_peers) return;

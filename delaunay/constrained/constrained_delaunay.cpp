@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "delaunay/constrained/constrained_delaunay.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "delaunay/canonical/follow_delaunay.h"
+#include "delaunay/constrained/insert_facets.h"
+#include "delaunay/constrained/protect_edges.h"
+#include "delaunay/recovery/coordinate_order.h"
+#include "delaunay/recovery/tetrahedron_mesh.h"
+
+namespace watertight::delaunay {
+namespace {
+
+/// The triangles of each facet in the numbering of an order, so that what follows does not depend
+/// on that of the solid.
+std::vector<FlatFacet> flat_facets(const FollowingTriangles& following,
+                                   const CoordinateOrder& order) {
+  std::vector<FlatFacet> facets;
+  for (Index facet = 0; facet + 1 < following.first.size(); ++facet) {
+    FlatFacet flat{{}, facet};
+    for (Index t = following.first[facet]; t < following.first[facet + 1]; ++t) {
+      Triangle triangle = following.triangles[t];
+      for (Index& vertex : triangle) vertex = order.rank_of[vertex];
+      flat.triangles.push_back(sorted(triangle));
+    }
+    std::sort(flat.triangles.begin(), flat.triangles.end());
+    facets.push_back(std::move(flat));
+  }
+  std::sort(facets.begin(), facets.end());
+  return facets;
+}
+
+}  // namespace
+
+Result<ConstrainedDelaunay> constrained_delaunay(const Solid& solid,
+                                                 const tessellate::FacetTriangles& triangles,
+                                                 const std::vector<bool>& is_taken_apart,
+                                                 const CancelPoll& is_cancelled) {
+  Result<ProtectedSolid> divided = protect_edges(solid, triangles, is_taken_apart, is_cancelled);
+  if (!divided) return divided.error();
+  const auto points = divided->solid.vertices();
+  const Result<FollowingTriangles> following =
+      follow_delaunay(divided->solid, tessellate::triangulate_facets(divided->solid),
+                      divided->delaunay, {}, is_cancelled);
+  if (!following) return following.error();
+  const CoordinateOrder order = order_of(points);
+  std::vector<Point> sorted_points;
+  for (const Index vertex : order.vertex_at) sorted_points.push_back(points[vertex]);
+  std::vector<geometry::Tetrahedron> tetrahedra = std::move(divided->delaunay.tetrahedra);
+  for (geometry::Tetrahedron& t : tetrahedra) {
+    for (Index& vertex : t) vertex = order.rank_of[vertex];
+    t = normalized(t);
+  }
+  std::sort(tetrahedra.begin(), tetrahedra.end());
+  Result<InsertedFacets> inserted = insert_facets(sorted_points, std::move(tetrahedra),
+                                                  flat_facets(*following, order), is_cancelled);
+  if (!inserted) return inserted.error();
+  ConstrainedDelaunay result;
+  result.points.assign(points.begin(), points.end());
+  result.tetrahedra = std::move(inserted->tetrahedra);
+  result.missing = inserted->missing;
+  for (const FlatFacet& facet : inserted->facets) {
+    result.triangles.insert(result.triangles.end(), facet.triangles.begin(), facet.triangles.end());
+    result.facet_of.resize(result.triangles.size(), divided->facet_of[facet.source]);
+  }
+  const auto renumber = [&](auto& vertices) {
+    for (Index& vertex : vertices) vertex = order.vertex_at[vertex];
+  };
+  for (geometry::Tetrahedron& t : result.tetrahedra) renumber(t);
+  for (Triangle& t : result.triangles) renumber(t);
+  return result;
+}
+
+}  // namespace watertight::delaunay

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A part of bench/cdt/prove_families: solids that are hard to tetrahedralize are proven without an
+// engine.
+#include <catch2/catch_test_macros.hpp>
+
+#include "tests/solids/hard_solids.h"
+#include "validate/certify.h"
+
+using namespace watertight;
+using namespace watertight::solids;
+
+TEST_CASE("hard solids that pass the exact tests are proven without an engine") {
+  for (const HardFamily& family : hard_families()) {
+    std::size_t passed = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      CertifyOptions options;
+      options.tolerances.planarity_metres = 1e30;
+      options.tolerances.planarity_degrees = 360;
+      const Report report = certify(hard_solid(family, seed), nullptr, options).report;
+      if (report.attempts.empty()) continue;  // the exact tests refuse it
+      ++passed;
+      INFO(family.name << ' ' << seed << ": " << report.undecided_reason);
+      CHECK(report.verdict == Verdict::valid);
+    }
+    INFO(family.name);
+    CHECK(passed >= 3);
+  }
+}

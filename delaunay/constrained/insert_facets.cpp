@@ -13,8 +13,8 @@
 #include <set>
 #include <utility>
 
-#include "delaunay/cancellation.h"
 #include "delaunay/constrained/perturbed_sphere.h"
+#include "delaunay/constrained/test_budget.h"
 #include "delaunay/constrained/wrap_cavity.h"
 #include "delaunay/recovery/section.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
@@ -23,8 +23,8 @@
 namespace watertight::delaunay {
 namespace {
 
-constexpr std::size_t kTestsPerTriangle = 4096;
-constexpr std::size_t kFewTests = std::size_t{1} << 20U;
+constexpr std::size_t kTestsPerTriangle = 16'384;
+constexpr std::size_t kFewTests = std::size_t{1} << 22U;
 
 using TrianglesAtEdge = std::map<VertexPair, std::vector<std::size_t>>;
 
@@ -45,21 +45,19 @@ class Insertion {
       : points_(points),
         mesh_(std::move(tetrahedra), points.size()),
         facets_(std::move(facets)),
-        cancellation_(is_cancelled) {}
+        budget_(kFewTests, is_cancelled) {}
 
   Result<InsertedFacets> run() {
-    tests_left_ = kFewTests;
     for (FlatFacet& facet : facets_) {
+      budget_.add(kTestsPerTriangle * facet.triangles.size());
       make_delaunay(facet);
       wanted_.insert(facet.triangles.begin(), facet.triangles.end());
-      tests_left_ += kTestsPerTriangle * facet.triangles.size();
     }
     std::size_t missing = 0;
     for (const FlatFacet& facet : facets_) {
       for (const std::vector<Triangle>& region : missing_regions(facet)) {
-        if (cancellation_.is_wanted())
-          return Error{ErrorCode::cancelled, "cancelled by the caller"};
         if (!insert(region)) missing += region.size();
+        if (budget_.is_cancelled()) return Error{ErrorCode::cancelled, "cancelled by the caller"};
       }
     }
     return InsertedFacets{mesh_.take(), std::move(facets_), missing};
@@ -140,14 +138,12 @@ class Insertion {
     const std::vector<std::size_t> missing = missing_of(facet);
     if (missing.size() < 2) return;
     const Index off = vertex_off(facet.triangles[missing[0]]);
-    // Each exchange takes an edge away that does not come back.
-    std::size_t exchanges_left = facet.triangles.size() * facet.triangles.size();
     bool is_changed = off != kNone;
     while (is_changed) {
       is_changed = false;
       std::vector<bool> is_new(facet.triangles.size());
       for (const auto& [edge, pair] : edges_of_all(facet, missing)) {
-        if (pair.size() != 2 || is_new[pair[0]] || is_new[pair[1]] || exchanges_left == 0) continue;
+        if (pair.size() != 2 || is_new[pair[0]] || is_new[pair[1]] || !budget_.take()) continue;
         Triangle& first = facet.triangles[pair[0]];
         Triangle& second = facet.triangles[pair[1]];
         const Index p = opposite(first, edge);
@@ -156,7 +152,6 @@ class Insertion {
         first = sorted({p, q, edge[0]});
         second = sorted({p, q, edge[1]});
         is_new[pair[0]] = is_new[pair[1]] = is_changed = true;
-        --exchanges_left;
       }
     }
     std::sort(facet.triangles.begin(), facet.triangles.end());
@@ -218,7 +213,7 @@ class Insertion {
       const geometry::Tetrahedron& tetrahedron = mesh_.tetrahedron(t);
       const auto [least, most] = sides(region[0], tetrahedron);
       return least < 0 && most > 0 && std::ranges::any_of(region, [&](const Triangle& triangle) {
-               return Section(points_, triangle, tetrahedron).meets_inside();
+               return budget_.take() && Section(points_, triangle, tetrahedron).meets_inside();
              });
     };
     std::vector<Index> crossed;
@@ -260,7 +255,8 @@ class Insertion {
   bool insert(const std::vector<Triangle>& region) {
     const std::vector<Index> crossed = crossed_by(region);
     auto fronts = fronts_of(crossed, region);
-    if (!fronts || (*fronts)[0].empty() || (*fronts)[1].empty()) return false;
+    if (budget_.is_used_up() || !fronts || (*fronts)[0].empty() || (*fronts)[1].empty())
+      return false;
     auto& [below, above] = *fronts;
     const Index top =
         *std::ranges::find_if(above.front(), [&](Index v) { return side(region[0], v) != 0; });
@@ -269,8 +265,8 @@ class Insertion {
       above.push_back(upward);
       below.push_back(reversed(upward));
     }
-    std::vector<geometry::Tetrahedron> filling = wrap_cavity(points_, above, tests_left_);
-    const std::vector<geometry::Tetrahedron> lower = wrap_cavity(points_, below, tests_left_);
+    std::vector<geometry::Tetrahedron> filling = wrap_cavity(points_, above, budget_);
+    const std::vector<geometry::Tetrahedron> lower = wrap_cavity(points_, below, budget_);
     if (filling.empty() || lower.empty()) return false;
     filling.insert(filling.end(), lower.begin(), lower.end());
     mesh_.replace(crossed, filling);
@@ -283,8 +279,7 @@ class Insertion {
   std::set<Triangle> wanted_;  // the triangles of all facets
   std::vector<std::uint32_t> mark_of_;
   std::uint32_t mark_ = 0;
-  std::size_t tests_left_ = 0;
-  Cancellation cancellation_;
+  TestBudget budget_;
 };
 
 }  // namespace

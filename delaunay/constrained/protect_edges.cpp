@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kFewSteiner = 1024;
 constexpr std::size_t kSteinerPerVertex = 24;
+constexpr std::size_t kMostSteiner = 32'768;
 /// The reach of a place, as a share of its distance from the nearer end: the place in it that has
 /// the fewest bits is taken. The second one is for edges on which doubles are rare.
 constexpr std::array<double, 2> kReaches{1.0 / 32, 1.0 / 2};
@@ -73,8 +74,9 @@ class Protection {
   }
 
   Result<ProtectedSolid> run() {
+    const std::size_t given = points_.size();
     const std::size_t most_points =
-        kFewSteiner + (1 + kSteinerPerVertex) * std::size_t{solid_.vertex_count()};
+        given + std::min(kFewSteiner + kSteinerPerVertex * given, kMostSteiner);
     while (points_.size() <= most_points) {
       Result<CanonicalDelaunay> delaunay = canonical_delaunay(
           scaled_to_integers(points_), 4096 + kTetrahedraPerVertex * points_.size(), is_cancelled_);

@@ -18,8 +18,8 @@ bool has_vertex(const Vertices& vertices, Index vertex) {
 
 class Wrapping {
  public:
-  Wrapping(std::span<const Point> points, std::vector<Triangle> front, std::size_t& tests)
-      : points_(points), front_(std::move(front)), tests_(tests) {
+  Wrapping(std::span<const Point> points, std::vector<Triangle> front, TestBudget& budget)
+      : points_(points), front_(std::move(front)), budget_(budget) {
     for (Triangle& face : front_) {
       face = rotated(face);
       corners_.insert(corners_.end(), face.begin(), face.end());
@@ -33,7 +33,7 @@ class Wrapping {
     while (!front_.empty()) {
       const Triangle base = front_.back();
       const Index apex = apex_over(base);
-      if (apex == kNone || tests_ == 0) return {};
+      if (apex == kNone || budget_.is_used_up()) return {};
       placed.push_back({base[0], base[1], base[2], apex});
       place(placed.back());
     }
@@ -48,7 +48,7 @@ class Wrapping {
   Index apex_over(const Triangle& base) {
     Index first = kNone;
     for (const Index v : corners_) {
-      if (has_vertex(base, v)) continue;
+      if (has_vertex(base, v) || !budget_.take()) continue;
       if (geometry::orient3d(at(base[0]), at(base[1]), at(base[2]), at(v)) <= 0) continue;
       if (first != kNone &&
           !is_in_perturbed_sphere({&at(base[0]), &at(base[1]), &at(base[2]), &at(first)}, at(v))) {
@@ -76,8 +76,7 @@ class Wrapping {
     const Box box = box_of(face);
     for (const Triangle& other : front_) {
       if (!overlap(box, box_of(other))) continue;
-      if (tests_ == 0) return false;
-      --tests_;
+      if (!budget_.take()) return false;
       if (geometry::is_intersection(geometry::classify_contact(points_, face, other))) return false;
     }
     return true;
@@ -122,14 +121,14 @@ class Wrapping {
   std::span<const Point> points_;
   std::vector<Triangle> front_;
   std::vector<Index> corners_;  // all vertices of the cavity, each once
-  std::size_t& tests_;
+  TestBudget& budget_;
 };
 
 }  // namespace
 
 std::vector<geometry::Tetrahedron> wrap_cavity(std::span<const Point> points,
-                                               std::vector<Triangle> front, std::size_t& tests) {
-  return Wrapping(points, std::move(front), tests).run();
+                                               std::vector<Triangle> front, TestBudget& budget) {
+  return Wrapping(points, std::move(front), budget).run();
 }
 
 }  // namespace watertight::delaunay

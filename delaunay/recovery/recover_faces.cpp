@@ -255,6 +255,12 @@ class Recovery {
     if (around.empty()) {
       around = cavity(triangles_[missing].vertices);
       std::erase_if(around, [&](Index t) { return !holds(t, *point); });
+      // Edges of two shells may cross in a point that is no vertex: both would be divided there.
+      const auto has_point = [&](Index t) {
+        return std::ranges::any_of(mesh_.tetrahedron(t),
+                                   [&](Index v) { return points_[v] == *point; });
+      };
+      if (std::ranges::any_of(around, has_point)) return std::nullopt;
     }
     const auto vertex = static_cast<Index>(points_.size());
     std::vector<geometry::Tetrahedron> parts;

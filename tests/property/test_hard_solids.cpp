@@ -2,7 +2,9 @@
 //
 // A part of bench/cdt/prove_families: solids that are hard to tetrahedralize are proven without an
 // engine.
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
+#include <string_view>
 
 #include "tests/solids/hard_solids.h"
 #include "validate/certify.h"
@@ -26,4 +28,13 @@ TEST_CASE("hard solids that pass the exact tests are proven without an engine") 
     INFO(family.name);
     CHECK(passed >= 3);
   }
+}
+
+TEST_CASE("edges of two shells that are divided at their common point leave a solid undecided") {
+  // Once both edges got a Steiner point there, and the program ended with a crash.
+  const auto touching =
+      std::ranges::find(hard_families(), std::string_view("touching"), &HardFamily::name);
+  const Report report = certify(hard_solid(*touching, 102595), nullptr).report;
+  CHECK(report.verdict == Verdict::undecided);
+  CHECK(report.undecided_reason.find("cross in a point that is not a vertex") != std::string::npos);
 }

@@ -150,21 +150,23 @@ TEST_CASE("an edge that doubles cannot divide is a limit, not a wrong answer") {
 }
 
 TEST_CASE("gift wrapping fills a box, and no cavity without a tetrahedralization") {
-  const auto wrapped = [](const Shape& shape, std::size_t& tests) {
+  const auto wrapped = [](const Shape& shape, delaunay::TestBudget& budget) {
     const Solid solid = samples::make_solid(shape);
     std::vector<Triangle> front;
     for (const Triangle& t : tessellate::triangulate_facets(solid).triangles) {
       front.push_back({t[0], t[2], t[1]});
     }
-    return delaunay::wrap_cavity(solid.vertices(), front, tests);
+    return delaunay::wrap_cavity(solid.vertices(), front, budget);
   };
-  std::size_t tests = 100'000;
-  CHECK(wrapped(samples::box({0, 0, 0}, {5, 6, 7}), tests).size() >= 5);
-  CHECK(wrapped(samples::schoenhardt(), tests).empty());
-  CHECK(tests > 0);
-  tests = 2;
-  CHECK(wrapped(samples::stairs(4), tests).empty());
-  CHECK(tests == 0);
+  const CancelPoll never;
+  delaunay::TestBudget enough(100'000, never);
+  CHECK(wrapped(samples::box({0, 0, 0}, {5, 6, 7}), enough).size() >= 5);
+  CHECK(wrapped(samples::schoenhardt(), enough).empty());
+  CHECK_FALSE(enough.is_used_up());
+  delaunay::TestBudget few(2, never);
+  CHECK(wrapped(samples::stairs(4), few).empty());
+  CHECK(few.is_used_up());
+  CHECK_FALSE(few.is_cancelled());
 }
 
 TEST_CASE("five points on a sphere are decided as in the canonical tetrahedralization") {

@@ -360,9 +360,11 @@ class Climb {
   }
 
   void try_recovered() {
-    if (!following_ && !make_delaunay(is_kept_)) return;
-    std::vector<bool> is_kept = is_kept_;
+    // Edges of other shells that lie on a facet are edges of its canonical triangles only.
+    std::vector<bool> is_kept = taken_apart();
     is_kept.resize(solid_.facet_count());
+    const bool is_anew = !following_ || contacts_.has_contacts();
+    if (is_anew && !make_delaunay(is_kept)) return;
     while (part_equal_triangles(following_->triangles, following_->facet_of, is_kept)) {
       if (!make_delaunay(is_kept)) return;
     }

@@ -30,6 +30,17 @@ TEST_CASE("hard solids that pass the exact tests are proven without an engine") 
   }
 }
 
+TEST_CASE("a cavity with an edge on a wall is proven without an engine") {
+  // The wall's own diagonal crosses that edge, and is Delaunay.
+  const auto touching =
+      std::ranges::find(hard_families(), std::string_view("touching"), &HardFamily::name);
+  for (const std::uint64_t seed : {13983, 21244, 29238, 52270}) {
+    const Report report = certify(hard_solid(*touching, seed), nullptr).report;
+    INFO(seed << ": " << report.undecided_reason);
+    CHECK(report.verdict == Verdict::valid);
+  }
+}
+
 TEST_CASE("edges of two shells that are divided at their common point leave a solid undecided") {
   // Once both edges got a Steiner point there, and the program ended with a crash.
   const auto touching =

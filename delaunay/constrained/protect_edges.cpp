@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kFewSteiner = 1024;
 constexpr std::size_t kSteinerPerVertex = 24;
-constexpr std::size_t kMostSteiner = 32'768;
+constexpr std::size_t kMostSteiner = 16'384;
 /// The reach of a place, as a share of its distance from the nearer end: the place in it that has
 /// the fewest bits is taken. The second one is for edges on which doubles are rare.
 constexpr std::array<double, 2> kReaches{1.0 / 32, 1.0 / 2};

@@ -2,6 +2,9 @@
 #include "delaunay/constrained/constrained_delaunay.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "delaunay/canonical/follow_delaunay.h"
@@ -32,12 +35,49 @@ std::vector<FlatFacet> flat_facets(const FollowingTriangles& following,
   return facets;
 }
 
+/// Powers of two that bring the extents of all axes within a factor of two. A tetrahedralization
+/// stays one under them; a solid that is flat or long needs fewer Steiner vertices.
+std::array<double, 3> equal_extents(const Box& box) {
+  std::array<double, 3> scale{1, 1, 1};
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max(largest, box.max[axis] - box.min[axis]);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double extent = box.max[axis] - box.min[axis];
+    if (extent > 0 && std::isfinite(largest)) {
+      scale[static_cast<std::size_t>(axis)] =
+          std::ldexp(1.0, std::ilogb(largest) - std::ilogb(extent));
+    }
+  }
+  return scale;
+}
+
+/// The solid under a scaling; none where a coordinate would not come back.
+std::optional<Solid> scaled(const Solid& solid, const std::array<double, 3>& scale) {
+  SolidArrays arrays = solid.arrays();
+  for (Point& p : arrays.vertices) {
+    const Point q{p.x * scale[0], p.y * scale[1], p.z * scale[2]};
+    if (q.x / scale[0] != p.x || q.y / scale[1] != p.y || q.z / scale[2] != p.z) {
+      return std::nullopt;
+    }
+    p = q;
+  }
+  Result<Solid> result = Solid::make(std::move(arrays), solid.lattice(), solid.srid());
+  if (!result) return std::nullopt;
+  return *std::move(result);
+}
+
 }  // namespace
 
-Result<ConstrainedDelaunay> constrained_delaunay(const Solid& solid,
+Result<ConstrainedDelaunay> constrained_delaunay(const Solid& given,
                                                  const tessellate::FacetTriangles& triangles,
                                                  const std::vector<bool>& is_taken_apart,
                                                  const CancelPoll& is_cancelled) {
+  std::array<double, 3> scale = equal_extents(given.box());
+  std::optional<Solid> with_equal_extents = scaled(given, scale);
+  if (!with_equal_extents) scale = {1, 1, 1};
+  const Solid& solid = with_equal_extents ? *with_equal_extents : given;
   Result<ProtectedSolid> divided = protect_edges(solid, triangles, is_taken_apart, is_cancelled);
   if (!divided) return divided.error();
   const auto points = divided->solid.vertices();
@@ -58,7 +98,9 @@ Result<ConstrainedDelaunay> constrained_delaunay(const Solid& solid,
                                                   flat_facets(*following, order), is_cancelled);
   if (!inserted) return inserted.error();
   ConstrainedDelaunay result;
-  result.points.assign(points.begin(), points.end());
+  for (const Point& p : points) {
+    result.points.push_back({p.x / scale[0], p.y / scale[1], p.z / scale[2]});
+  }
   result.tetrahedra = std::move(inserted->tetrahedra);
   result.missing = inserted->missing;
   for (const FlatFacet& facet : inserted->facets) {

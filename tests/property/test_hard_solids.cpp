@@ -6,6 +6,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <string_view>
 
+#include "tests/solids/builders.h"
 #include "tests/solids/hard_solids.h"
 #include "validate/certify.h"
 
@@ -28,6 +29,12 @@ TEST_CASE("hard solids that pass the exact tests are proven without an engine") 
     INFO(family.name);
     CHECK(passed >= 3);
   }
+}
+
+TEST_CASE("Chazelle's polyhedron with ten notches is proven without an engine") {
+  const Report report = certify(solid_of({chazelle(10)}, millimetres()), nullptr).report;
+  INFO(report.undecided_reason);
+  CHECK(report.verdict == Verdict::valid);
 }
 
 TEST_CASE("a cavity with an edge on a wall is proven without an engine") {

@@ -118,6 +118,20 @@ TEST_CASE("the constrained tetrahedralization does not depend on the numbering o
   }
 }
 
+TEST_CASE("a solid that is stretched along an axis needs no more Steiner vertices") {
+  for (Shape shape : hard_shapes()) {
+    const auto expected = constrained(samples::make_solid(shape));
+    REQUIRE(expected.has_value());
+    for (Point& p : shape.vertices) p.x *= 1024;
+    const auto result = constrained(samples::make_solid(shape));
+    REQUIRE(result.has_value());
+    REQUIRE(result->points.size() == expected->points.size());
+    CHECK(result->tetrahedra.size() == expected->tetrahedra.size());
+    CHECK(judged(samples::make_solid(shape), *result).refusal ==
+          delaunay::CertificateRefusal::none);
+  }
+}
+
 TEST_CASE("a constrained tetrahedralization can be cancelled at every question") {
   const Solid solid = samples::make_solid(sheared(samples::stairs(6)));
   int questions = 0;

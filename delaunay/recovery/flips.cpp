@@ -233,6 +233,8 @@ const Flips::Crossings& Flips::crossings(Index a, Index b) {
     mark_of_[t] = mark_;
     --visits_left_;
     const geometry::Tetrahedron& corners = mesh_.tetrahedron(t);
+    const std::size_t start = corner_of(corners, a);
+    if (start < 4 && !is_before(a, b, inward_face(corners, start))) continue;
     // turns[i][j] is how the edge of corners i and j turns around the segment.
     std::array<std::array<int, 4>, 4> turns{};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -265,6 +267,12 @@ const Flips::Crossings& Flips::crossings(Index a, Index b) {
   sort_once(found.faces);
   sort_once(found.around);
   return found;
+}
+
+/// False if the ray from `a` through `b` misses a face, on the inner side of which `a` lies.
+bool Flips::is_before(Index a, Index b, const Triangle& face) const {
+  const auto [p, q, r] = face;
+  return side(a, b, p, q) <= 0 && side(a, b, q, r) <= 0 && side(a, b, r, p) <= 0;
 }
 
 /// Adds an edge in one plane with a segment if the segment crosses it, and goes on around it.

@@ -86,7 +86,7 @@ class Flips {
       : points_(points),
         mesh_(mesh),
         kept_(kept),
-        signs_(points),
+        signs_(geometry::box_of(points)),
         visits_left_(visits),
         cancellation_(is_cancelled) {}
 
@@ -159,6 +159,7 @@ class Flips {
   template <class Belongs>
   Index find_in_star(Index vertex, const Belongs& belongs);
   const Crossings& crossings(Index a, Index b);
+  bool is_before(Index a, Index b, const Triangle& face) const;
   void add_crossed_edge(Index a, Index b, const MeshEdge& edge);
   std::vector<MeshEdge> edges_through(const Triangle& triangle);
   /// Replaces the two tetrahedra at a face by three.

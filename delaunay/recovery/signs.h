@@ -3,9 +3,6 @@
 // Exact signs for points in one box, inlined into the loops of this folder. Private to delaunay/.
 #pragma once
 
-#include <cstddef>
-#include <span>
-
 #include "geometry/point.h"
 #include "geometry/predicates/predicates.h"
 
@@ -18,11 +15,11 @@ namespace watertight::delaunay {
 /// itself. Signs that the filter does not decide are computed exactly.
 class Signs {
  public:
-  /// For points in the hull of `points`.
-  explicit Signs(std::span<const Point> points) {
+  Signs() = default;
+  /// For points in a box, which may be empty.
+  explicit Signs(const geometry::Box& box) {
     constexpr double kUnit = 1.0 / 9007199254740992.0;
     constexpr double kUnderflow = 1e-200;
-    const geometry::Box box = geometry::box_of(points);
     if (box.is_empty()) return;
     const double x = box.max.x - box.min.x;
     const double y = box.max.y - box.min.y;

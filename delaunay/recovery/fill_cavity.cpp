@@ -73,6 +73,7 @@ class Search {
   struct Choice {
     Index apex = kNone;
     int closed = 0;  // the faces of the front that the tetrahedron closes, besides its base
+    double sphere = 0;
   };
   struct Level {
     std::vector<Triangle> front;
@@ -112,6 +113,28 @@ class Search {
     return front;
   }
 
+  /// How far the sphere through a triangle and an apex reaches beyond the triangle, in a measure
+  /// of its own for each triangle. Rounded.
+  double sphere_beyond(const Triangle& base, Index apex) const {
+    const Point u = difference(base[1], base[0]);
+    const Point v = difference(base[2], base[0]);
+    const Point w = difference(apex, base[0]);
+    const Point n = cross(u, v);
+    const Point x = cross(v, n);
+    const Point y = cross(n, u);
+    const double uu = dot(u, u) / dot(n, n);
+    const double vv = dot(v, v) / dot(n, n);
+    const Point centre{uu * x.x + vv * y.x, uu * x.y + vv * y.y, uu * x.z + vv * y.z};
+    return (dot(w, w) - dot(centre, w)) / dot(n, w);
+  }
+  Point difference(Index to, Index from) const {
+    return {at(to).x - at(from).x, at(to).y - at(from).y, at(to).z - at(from).z};
+  }
+  static double dot(const Point& p, const Point& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
+  static Point cross(const Point& p, const Point& q) {
+    return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
+  }
+
   /// The apexes above the last triangle of the front, those whose tetrahedra close most first.
   std::vector<Choice> choices(const std::vector<Triangle>& front) const {
     std::vector<Choice> found;
@@ -124,10 +147,10 @@ class Search {
         const Triangle face = rotated(inward_face(tetrahedron, corner));
         if (find(front, face) != front.end()) ++closed;
       }
-      found.push_back({apex, closed});
+      found.push_back({apex, closed, sphere_beyond(front.back(), apex)});
     }
     std::stable_sort(found.begin(), found.end(),
-                     [](const Choice& x, const Choice& y) { return x.closed > y.closed; });
+                     [](const Choice& x, const Choice& y) { return x.closed != y.closed ? x.closed > y.closed : x.sphere < y.sphere; });
     return found;
   }
 

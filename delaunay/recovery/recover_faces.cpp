@@ -41,7 +41,7 @@ constexpr int kGrowths = 8;
 /// The most rounds, each of which divides an edge of each missing triangle.
 constexpr std::size_t kRounds = 16;
 /// The most rounds in a row after which no fewer triangles are missing than before.
-constexpr std::size_t kIdleRounds = 3;
+constexpr std::size_t kIdleRounds = 6;
 /// The rounds of flips alone; the search begins after them.
 constexpr std::size_t kRoundsOfFlips = 3;
 /// The most parts of triangles for each triangle of the boundary.

@@ -29,7 +29,7 @@ namespace watertight::delaunay {
 namespace {
 
 /// The most tests that the search for the filling of one triangle's cavities makes.
-constexpr std::size_t kFillSteps = 1000;
+constexpr std::size_t kFillSteps = 400;
 /// The most tests for all triangles together, for each triangle of the boundary.
 constexpr std::size_t kFillStepsPerTriangle = 16;
 /// The most tetrahedra that flips, and that searches look at for each triangle of the boundary, and
@@ -41,7 +41,7 @@ constexpr int kGrowths = 8;
 /// The most rounds, each of which divides an edge of each missing triangle.
 constexpr std::size_t kRounds = 16;
 /// The most rounds in a row after which no fewer triangles are missing than before.
-constexpr std::size_t kIdleRounds = 6;
+constexpr std::size_t kIdleRounds = 8;
 /// The rounds of flips alone; the search begins after them.
 constexpr std::size_t kRoundsOfFlips = 3;
 /// The most parts of triangles for each triangle of the boundary.

@@ -149,8 +149,9 @@ class Search {
       }
       found.push_back({apex, closed, sphere_beyond(front.back(), apex)});
     }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const Choice& x, const Choice& y) { return x.closed != y.closed ? x.closed > y.closed : x.sphere < y.sphere; });
+    std::stable_sort(found.begin(), found.end(), [](const Choice& x, const Choice& y) {
+      return x.closed != y.closed ? x.closed > y.closed : x.sphere < y.sphere;
+    });
     return found;
   }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "delaunay/recovery/signs.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/intersection/triangle_triangle.h"
 #include "geometry/predicates/predicates.h"
@@ -26,6 +27,9 @@ class Search {
     }
     std::sort(corners_.begin(), corners_.end());
     corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+    geometry::Box box;
+    for (const Index corner : corners_) box.include(at(corner));
+    signs_ = Signs(box);
     levels_.push_back({std::move(cavity.front), {}, 0, {}});
   }
 
@@ -36,12 +40,15 @@ class Search {
       Level& level = levels_.back();
       if (level.front.empty()) return true;
       if (level.next == level.choices.size()) {
+        if (!level.has_room) blocked_.push_back(level.front.back());
         levels_.pop_back();
         continue;
       }
       if (steps_ == 0) return false;
-      const Choice choice = level.choices[level.next++];
-      level.placed = placed(level.front.back(), choice.apex);
+      --steps_;
+      level.placed = placed(level.front.back(), level.choices[level.next++].apex);
+      if (!is_inside(level.front, level.placed)) continue;
+      level.has_room = true;
       Level below;
       below.front = front_after(level.front, level.placed);
       if (below.front.size() > kLargestFront) continue;
@@ -66,25 +73,37 @@ class Search {
   struct Choice {
     Index apex = kNone;
     int closed = 0;  // the faces of the front that the tetrahedron closes, besides its base
+    double sphere = 0;
   };
   struct Level {
     std::vector<Triangle> front;
     std::vector<Choice> choices;  // for the last triangle of the front
     std::size_t next = 0;
     geometry::Tetrahedron placed{};
+    bool has_room = false;  // for a tetrahedron over the last triangle
   };
 
   const Point& at(Index vertex) const { return points_[vertex]; }
+  int side(Index a, Index b, Index c, Index d) const {
+    return signs_.orient3d(at(a), at(b), at(c), at(d));
+  }
 
   static geometry::Tetrahedron placed(const Triangle& base, Index apex) {
     return {base[0], base[1], base[2], apex};
+  }
+
+  static std::vector<Triangle>::const_iterator find(const std::vector<Triangle>& front,
+                                                    const Triangle& face) {
+    return std::find_if(front.begin(), front.end(), [&](const Triangle& other) {
+      return other[0] == face[0] && other[1] == face[1] && other[2] == face[2];
+    });
   }
 
   static std::vector<Triangle> front_after(std::vector<Triangle> front,
                                            const geometry::Tetrahedron& tetrahedron) {
     for (std::size_t corner = 0; corner < 4; ++corner) {
       const Triangle face = rotated(inward_face(tetrahedron, corner));
-      const auto found = std::find(front.begin(), front.end(), face);
+      const auto found = find(front, face);
       if (found != front.end()) {
         front.erase(found);
       } else {
@@ -94,22 +113,45 @@ class Search {
     return front;
   }
 
-  /// The apexes of tetrahedra over the last triangle of the front that lie inside, those that close
-  /// most first.
-  std::vector<Choice> choices(const std::vector<Triangle>& front) {
+  /// How far the sphere through a triangle and an apex reaches beyond the triangle, in a measure
+  /// of its own for each triangle. Rounded.
+  double sphere_beyond(const Triangle& base, Index apex) const {
+    const Point u = difference(base[1], base[0]);
+    const Point v = difference(base[2], base[0]);
+    const Point w = difference(apex, base[0]);
+    const Point n = cross(u, v);
+    const Point x = cross(v, n);
+    const Point y = cross(n, u);
+    const double uu = dot(u, u) / dot(n, n);
+    const double vv = dot(v, v) / dot(n, n);
+    const Point centre{uu * x.x + vv * y.x, uu * x.y + vv * y.y, uu * x.z + vv * y.z};
+    return (dot(w, w) - dot(centre, w)) / dot(n, w);
+  }
+  Point difference(Index to, Index from) const {
+    return {at(to).x - at(from).x, at(to).y - at(from).y, at(to).z - at(from).z};
+  }
+  static double dot(const Point& p, const Point& q) { return p.x * q.x + p.y * q.y + p.z * q.z; }
+  static Point cross(const Point& p, const Point& q) {
+    return {p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
+  }
+
+  /// The apexes above the last triangle of the front, those whose tetrahedra close most first.
+  std::vector<Choice> choices(const std::vector<Triangle>& front) const {
     std::vector<Choice> found;
-    const Triangle& base = front.back();
+    const auto [a, b, c] = front.back();
     for (const Index apex : corners_) {
-      if (steps_ == 0) break;
-      if (has_vertex(base, apex)) continue;
-      if (geometry::orient3d(at(base[0]), at(base[1]), at(base[2]), at(apex)) <= 0) continue;
-      --steps_;
-      const int closed = closed_by(front, placed(base, apex));
-      if (closed >= 0) found.push_back({apex, closed});
+      if (apex == a || apex == b || apex == c || side(a, b, c, apex) <= 0) continue;
+      const geometry::Tetrahedron tetrahedron = placed(front.back(), apex);
+      int closed = 0;
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Triangle face = rotated(inward_face(tetrahedron, corner));
+        if (find(front, face) != front.end()) ++closed;
+      }
+      found.push_back({apex, closed, sphere_beyond(front.back(), apex)});
     }
-    if (found.empty()) blocked_.push_back(base);
-    std::stable_sort(found.begin(), found.end(),
-                     [](const Choice& a, const Choice& b) { return a.closed > b.closed; });
+    std::stable_sort(found.begin(), found.end(), [](const Choice& x, const Choice& y) {
+      return x.closed != y.closed ? x.closed > y.closed : x.sphere < y.sphere;
+    });
     return found;
   }
 
@@ -118,21 +160,15 @@ class Search {
     return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
   }
 
-  /// The number of faces of the front, besides the base, that are faces of the tetrahedron; -1 if
-  /// the tetrahedron is not inside.
-  int closed_by(const std::vector<Triangle>& front,
-                const geometry::Tetrahedron& tetrahedron) const {
-    if (crosses_hull(tetrahedron) || holds_corner(tetrahedron)) return -1;
-    int closed = 0;
+  /// True if a tetrahedron over a triangle of the front fits between the others.
+  bool is_inside(const std::vector<Triangle>& front,
+                 const geometry::Tetrahedron& tetrahedron) const {
+    if (crosses_hull(tetrahedron) || holds_corner(tetrahedron)) return false;
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const Triangle face = rotated(inward_face(tetrahedron, corner));
-      if (std::find(front.begin(), front.end(), face) != front.end()) {
-        ++closed;
-      } else if (!is_free(front, face)) {
-        return -1;
-      }
+      if (find(front, face) == front.end() && !is_free(front, face)) return false;
     }
-    return closed;
+    return true;
   }
 
   /// True if the tetrahedron has the outer vertex, and a corner that is not in the plane of the
@@ -141,7 +177,7 @@ class Search {
     if (!has_vertex(tetrahedron, outer_vertex_)) return false;
     return std::any_of(tetrahedron.begin(), tetrahedron.end(), [&](Index vertex) {
       return vertex != outer_vertex_ && !has_vertex(base_, vertex) &&
-             geometry::orient3d(at(base_[0]), at(base_[1]), at(base_[2]), at(vertex)) != 0;
+             side(base_[0], base_[1], base_[2], vertex) != 0;
     });
   }
 
@@ -153,7 +189,7 @@ class Search {
       }
       for (std::size_t corner = 0; corner < 4; ++corner) {
         const auto [a, b, c] = inward_face(tetrahedron, corner);
-        if (geometry::orient3d(at(a), at(b), at(c), at(vertex)) < 0) return false;
+        if (side(a, b, c, vertex) < 0) return false;
       }
       return true;
     });
@@ -193,6 +229,7 @@ class Search {
   Index outer_vertex_;
   Triangle base_;
   std::vector<Index> corners_;
+  Signs signs_;
   std::vector<Level> levels_;
   std::vector<Triangle> blocked_;
 };

@@ -40,8 +40,8 @@ struct Filling {
 /// Fills a cavity by a search that takes at most `steps` tests of a tetrahedron against the front;
 /// `steps` becomes the number that is left. The result depends on the arguments alone.
 /// Source: gift wrapping of cavities as in Si and Gaertner, "3D boundary recovery by constrained
-/// Delaunay tetrahedralization" (2011). Departures: a search that goes back over wrong choices, in
-/// place of the Delaunay rule; every decision is exact.
+/// Delaunay tetrahedralization" (2011). Departures: a search that goes back over wrong choices; the
+/// Delaunay rule, rounded, only orders choices that close as many faces; every decision is exact.
 Filling fill_cavity(std::span<const Point> points, Cavity cavity, std::size_t& steps);
 
 }  // namespace watertight::delaunay

@@ -10,8 +10,6 @@
 namespace watertight::delaunay {
 namespace {
 
-/// The most vertices around an edge that is removed.
-constexpr std::size_t kLargestRing = 12;
 /// The most times that a ring is shortened for one edge or triangle.
 constexpr std::size_t kShrinks = 4;
 
@@ -27,7 +25,14 @@ std::size_t corner_of(const geometry::Tetrahedron& t, Index vertex) {
 /// Sorts parts of the mesh, and keeps the first of equal ones.
 template <class Part>
 void sort_once(std::vector<Part>& parts) {
-  std::stable_sort(parts.begin(), parts.end());
+  constexpr std::size_t kFew = 32;
+  if (parts.size() > kFew) {
+    std::stable_sort(parts.begin(), parts.end());
+  } else {
+    for (auto at = parts.begin(); at != parts.end(); ++at) {
+      std::rotate(std::upper_bound(parts.begin(), at, *at), at, at + 1);
+    }
+  }
   parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
 }
 
@@ -108,15 +113,12 @@ class Flips::Obstacles {
   int weight_ = 1;
 };
 
-int Flips::side(Index a, Index b, Index c, Index d) const {
-  if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
-  return geometry::orient3d(points_[a], points_[b], points_[c], points_[d]);
-}
-
-std::span<const Index> Flips::star(Index vertex) {
+template <class Belongs>
+Index Flips::find_in_star(Index vertex, const Belongs& belongs) {
   star_.clear();
   const Index first = mesh_.at_vertex(vertex);
-  if (first == kNone) return star_;
+  if (first == kNone) return kNone;
+  if (belongs(mesh_.tetrahedron(first))) return first;
   if (mark_of_.size() < mesh_.places()) mark_of_.resize(mesh_.places() + 64, 0);
   ++mark_;
   star_.push_back(first);
@@ -130,25 +132,28 @@ std::span<const Index> Flips::star(Index vertex) {
       const Index other = mesh_.neighbour(star_[i], corner);
       if (other == kNone || mark_of_[other] == mark_) continue;
       mark_of_[other] = mark_;
+      if (belongs(mesh_.tetrahedron(other))) return other;
       star_.push_back(other);
     }
-  }
-  return star_;
-}
-
-Index Flips::tetrahedron_at(Index a, Index b) {
-  for (const Index t : star(a)) {
-    if (has(mesh_.tetrahedron(t), b)) return t;
   }
   return kNone;
 }
 
+std::span<const Index> Flips::star(Index vertex) {
+  find_in_star(vertex, [](const geometry::Tetrahedron&) { return false; });
+  return star_;
+}
+
+Index Flips::tetrahedron_at(Index a, Index b) {
+  return find_in_star(a, [b](const geometry::Tetrahedron& t) { return has(t, b); });
+}
+
 bool Flips::is_face(const Triangle& triangle) {
-  for (const Index t : star(triangle[0])) {
-    const geometry::Tetrahedron& corners = mesh_.tetrahedron(t);
-    if (has(corners, triangle[1]) && has(corners, triangle[2])) return true;
-  }
-  return false;
+  const auto [a, b, c] = triangle;
+  const auto belongs = [b = b, c = c](const geometry::Tetrahedron& t) {
+    return has(t, b) && has(t, c);
+  };
+  return find_in_star(a, belongs) != kNone;
 }
 
 std::optional<Flips::Ring> Flips::ring_of(const MeshEdge& edge) const {
@@ -157,8 +162,9 @@ std::optional<Flips::Ring> Flips::ring_of(const MeshEdge& edge) const {
   Ring ring;
   ring.edge = edge.vertices;
   const auto [first, second] = others(mesh_.tetrahedron(start), p, q);
-  ring.vertices = {first, second};
-  ring.tetrahedra = {start};
+  ring.vertices.push_back(first);
+  ring.vertices.push_back(second);
+  ring.tetrahedra.push_back(start);
   // Forward over the face (p, q, last vertex), then backward if the hull is met.
   Index t = start;
   Index behind = first;
@@ -182,8 +188,8 @@ std::optional<Flips::Ring> Flips::ring_of(const MeshEdge& edge) const {
     if (next == kNone) return ring;
     if (ring.vertices.size() == kLargestRing) return std::nullopt;
     behind = ring.vertices.front();
-    ring.vertices.insert(ring.vertices.begin(), others(mesh_.tetrahedron(next), p, q)[0]);
-    ring.tetrahedra.insert(ring.tetrahedra.begin(), next);
+    ring.vertices.push_front(others(mesh_.tetrahedron(next), p, q)[0]);
+    ring.tetrahedra.push_front(next);
     t = next;
   }
 }
@@ -212,29 +218,33 @@ bool Flips::crosses_edge(Index a, Index b, const VertexPair& edge) const {
 }
 
 /// Looks for them from the tetrahedra at `a` on, through each one that is found.
-Flips::Crossings Flips::crossings(Index a, Index b) {
-  Crossings found;
+const Flips::Crossings& Flips::crossings(Index a, Index b) {
+  Crossings& found = found_;
+  found.edges.clear();
+  found.faces.clear();
+  found.around.clear();
   const std::span<const Index> first = star(a);
-  std::vector<Index> pending(first.begin(), first.end());
+  pending_.assign(first.begin(), first.end());
   ++mark_;
-  while (!pending.empty() && visits_left_ > 0) {
-    const Index t = pending.back();
-    pending.pop_back();
+  while (!pending_.empty() && visits_left_ > 0) {
+    const Index t = pending_.back();
+    pending_.pop_back();
     if (mark_of_[t] == mark_) continue;
     mark_of_[t] = mark_;
     --visits_left_;
     const geometry::Tetrahedron& corners = mesh_.tetrahedron(t);
+    const std::size_t start = corner_of(corners, a);
+    if (start < 4 && !is_before(a, b, inward_face(corners, start))) continue;
     // turns[i][j] is how the edge of corners i and j turns around the segment.
     std::array<std::array<int, 4>, 4> turns{};
     for (std::size_t i = 0; i < 4; ++i) {
+      if (corners[i] == a || corners[i] == b) continue;
       for (std::size_t j = 0; j < i; ++j) {
-        turns[i][j] = side(a, b, corners[i], corners[j]);
+        if (corners[j] == a || corners[j] == b) continue;
+        turns[i][j] =
+            signs_.orient3d(points_[a], points_[b], points_[corners[i]], points_[corners[j]]);
         turns[j][i] = -turns[i][j];
-        const MeshEdge edge{pair_of(corners[i], corners[j]), t};
-        if (turns[i][j] != 0 || !crosses_edge(a, b, edge.vertices)) continue;
-        found.edges.push_back(edge);
-        const std::optional<Ring> ring = ring_of(edge);
-        if (ring) pending.insert(pending.end(), ring->tetrahedra.begin(), ring->tetrahedra.end());
+        if (turns[i][j] == 0) add_crossed_edge(a, b, {pair_of(corners[i], corners[j]), t});
       }
     }
     for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -243,21 +253,34 @@ Flips::Crossings Flips::crossings(Index a, Index b) {
       const std::size_t k = (corner + 3) % 4;
       const bool is_around =
           turns[i][j] != 0 && turns[i][j] == turns[j][k] && turns[j][k] == turns[k][i];
+      if (!is_around) continue;
       const Triangle face = sorted({corners[i], corners[j], corners[k]});
-      if (!is_around ||
-          side(face[0], face[1], face[2], a) * side(face[0], face[1], face[2], b) >= 0) {
-        continue;
-      }
+      const auto [p, q, r] = face;
+      if (side(p, q, r, a) * side(p, q, r, b) >= 0) continue;
       found.faces.push_back({face, t, corner});
       for (const VertexPair& edge : edges_of(face)) found.around.push_back({edge, t});
       const Index other = mesh_.neighbour(t, corner);
-      if (other != kNone) pending.push_back(other);
+      if (other != kNone) pending_.push_back(other);
     }
   }
   sort_once(found.edges);
   sort_once(found.faces);
   sort_once(found.around);
   return found;
+}
+
+/// False if the ray from `a` through `b` misses a face, on the inner side of which `a` lies.
+bool Flips::is_before(Index a, Index b, const Triangle& face) const {
+  const auto [p, q, r] = face;
+  return side(a, b, p, q) <= 0 && side(a, b, q, r) <= 0 && side(a, b, r, p) <= 0;
+}
+
+/// Adds an edge in one plane with a segment if the segment crosses it, and goes on around it.
+void Flips::add_crossed_edge(Index a, Index b, const MeshEdge& edge) {
+  if (!crosses_edge(a, b, edge.vertices)) return;
+  found_.edges.push_back(edge);
+  const std::optional<Ring> ring = ring_of(edge);
+  if (ring) pending_.insert(pending_.end(), ring->tetrahedra.begin(), ring->tetrahedra.end());
 }
 
 /// The triangulation of a ring that leaves the fewest obstacles, and among those makes the most
@@ -279,7 +302,7 @@ class Flips::RingTriangulation {
 
   std::vector<geometry::Tetrahedron> tetrahedra() const {
     const auto [p, q] = ring_.edge;
-    const std::vector<Index>& v = ring_.vertices;
+    const RingList& v = ring_.vertices;
     std::vector<geometry::Tetrahedron> result;
     std::vector<std::array<std::size_t, 2>> pending{{0, v.size() - 1}};
     while (!pending.empty()) {
@@ -313,7 +336,7 @@ class Flips::RingTriangulation {
 
   void choose_middle(std::size_t i, std::size_t j) {
     const auto [p, q] = ring_.edge;
-    const std::vector<Index>& v = ring_.vertices;
+    const RingList& v = ring_.vertices;
     Best& best = best_[i][j];
     best.exists = false;
     for (std::size_t k = i + 1; k < j; ++k) {
@@ -348,7 +371,7 @@ class Flips::RingTriangulation {
 };
 
 std::array<double, 2> Flips::middle_of_crossings(Index a, Index b) {
-  const Crossings crossed = crossings(a, b);
+  const Crossings& crossed = crossings(a, b);
   std::vector<double> places;
   const auto add = [&](double before, double after) {
     const double sum = before + after;
@@ -421,7 +444,8 @@ bool Flips::remove_edge(const MeshEdge& edge, const Obstacles& obstacles) {
   if (!is_flat_outside) return false;
   const RingTriangulation triangulation(*this, *ring, obstacles, before);
   if (!triangulation.exists() || triangulation.obstacles() >= before) return false;
-  mesh_.replace(ring->tetrahedra, triangulation.tetrahedra());
+  mesh_.replace(std::span(ring->tetrahedra.begin(), ring->tetrahedra.size()),
+                triangulation.tetrahedra());
   return true;
 }
 
@@ -446,7 +470,7 @@ bool Flips::recover_edge(Index a, Index b) {
   const auto shrink = [&](const MeshEdge& edge) { return shrink_ring(edge, obstacles); };
   std::size_t shrinks_left = kShrinks;
   while (tetrahedron_at(a, b) == kNone) {
-    const Crossings found = crossings(a, b);
+    const Crossings& found = crossings(a, b);
     if (is_exhausted() || cancellation_.is_due_and_wanted(found.around.size())) return false;
     if (std::ranges::any_of(found.edges, remove) || std::ranges::any_of(found.faces, exchange) ||
         std::ranges::any_of(found.around, remove)) {

@@ -4,6 +4,7 @@
 // face or around an edge for others that fill the same place. Private to delaunay/.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include "base/cancel.h"
 #include "delaunay/cancellation.h"
+#include "delaunay/recovery/signs.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/point.h"
 
@@ -43,6 +45,31 @@ class KeptParts {
   std::unordered_set<std::uint64_t, Hash> edges_;
 };
 
+/// The most vertices around an edge that is removed.
+inline constexpr std::size_t kLargestRing = 12;
+
+/// A short list that holds its elements itself.
+class RingList {
+ public:
+  std::size_t size() const { return size_; }
+  const Index* begin() const { return items_.data(); }
+  const Index* end() const { return items_.data() + size_; }
+  Index operator[](std::size_t i) const { return items_[i]; }
+  Index front() const { return items_[0]; }
+  Index back() const { return items_[size_ - 1]; }
+  void push_back(Index item) { items_[size_++] = item; }
+  void push_front(Index item) {
+    std::copy_backward(items_.data(), items_.data() + size_, items_.data() + size_ + 1);
+    items_[0] = item;
+    ++size_;
+  }
+  void pop_back() { --size_; }
+
+ private:
+  std::array<Index, kLargestRing> items_;
+  std::size_t size_ = 0;
+};
+
 /// Each flip lowers the number of faces and edges that are in the way of the edge or triangle that
 /// is wanted, or, a bounded number of times, leaves it as it is and shortens a ring. Every decision
 /// is exact. The result depends on the mesh and its numbering alone.
@@ -59,6 +86,7 @@ class Flips {
       : points_(points),
         mesh_(mesh),
         kept_(kept),
+        signs_(geometry::box_of(points)),
         visits_left_(visits),
         cancellation_(is_cancelled) {}
 
@@ -86,8 +114,8 @@ class Flips {
   /// edge of the hull there is one vertex more than there are tetrahedra.
   struct Ring {
     VertexPair edge{};
-    std::vector<Index> vertices;
-    std::vector<Index> tetrahedra;
+    RingList vertices;
+    RingList tetrahedra;
     bool is_open() const { return vertices.size() > tetrahedra.size(); }
   };
   /// An edge of the mesh, and a tetrahedron that has it.
@@ -116,14 +144,23 @@ class Flips {
   /// Triangles between the vertices of a ring.
   class RingTriangulation;
 
-  int side(Index a, Index b, Index c, Index d) const;
+  /// The sign of orient3d, 0 if a vertex is given twice.
+  int side(Index a, Index b, Index c, Index d) const {
+    if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
+    return signs_.orient3d(points_[a], points_[b], points_[c], points_[d]);
+  }
   double rounded_volume(Index a, Index b, Index c, Index d) const;
   double rounded_area(Index a, Index b, Index c) const;
   std::array<double, 3> rounded_product(Index a, Index b, Index c) const;
   std::optional<Ring> ring_of(const MeshEdge& edge) const;
   bool crosses_face(Index a, Index b, const Triangle& face) const;
   bool crosses_edge(Index a, Index b, const VertexPair& edge) const;
-  Crossings crossings(Index a, Index b);
+  /// The first tetrahedron of the star of a vertex that belongs, or kNone.
+  template <class Belongs>
+  Index find_in_star(Index vertex, const Belongs& belongs);
+  const Crossings& crossings(Index a, Index b);
+  bool is_before(Index a, Index b, const Triangle& face) const;
+  void add_crossed_edge(Index a, Index b, const MeshEdge& edge);
   std::vector<MeshEdge> edges_through(const Triangle& triangle);
   /// Replaces the two tetrahedra at a face by three.
   bool exchange_face(const MeshFace& face, const Obstacles& obstacles);
@@ -135,9 +172,12 @@ class Flips {
   const std::vector<Point>& points_;
   TetrahedronMesh& mesh_;
   const KeptParts& kept_;
+  Signs signs_;
   std::size_t visits_left_;
   Cancellation cancellation_;
   std::vector<Index> star_;
+  std::vector<Index> pending_;  // tetrahedra along a segment
+  Crossings found_;             // by crossings()
   std::vector<std::uint32_t> mark_of_;
   std::uint32_t mark_ = 0;
 };

@@ -29,7 +29,7 @@ namespace watertight::delaunay {
 namespace {
 
 /// The most tests that the search for the filling of one triangle's cavities makes.
-constexpr std::size_t kFillSteps = 1000;
+constexpr std::size_t kFillSteps = 400;
 /// The most tests for all triangles together, for each triangle of the boundary.
 constexpr std::size_t kFillStepsPerTriangle = 16;
 /// The most tetrahedra that flips, and that searches look at for each triangle of the boundary, and
@@ -41,7 +41,7 @@ constexpr int kGrowths = 8;
 /// The most rounds, each of which divides an edge of each missing triangle.
 constexpr std::size_t kRounds = 16;
 /// The most rounds in a row after which no fewer triangles are missing than before.
-constexpr std::size_t kIdleRounds = 3;
+constexpr std::size_t kIdleRounds = 8;
 /// The rounds of flips alone; the search begins after them.
 constexpr std::size_t kRoundsOfFlips = 3;
 /// The most parts of triangles for each triangle of the boundary.
@@ -81,7 +81,8 @@ class Recovery {
     std::size_t least_missing = missing_.size() + 1;
     std::size_t idle_rounds = 0;
     for (std::size_t round = 0; round < kRounds && !is_cancelled; ++round) {
-      if (round >= kRoundsOfFlips && !is_search_over_) is_cancelled = !search();
+      const bool is_search_due = round >= kRoundsOfFlips || are_edges_there();
+      if (is_search_due && !is_search_over_) is_cancelled = !search();
       idle_rounds = missing_.size() < least_missing ? 0 : idle_rounds + 1;
       least_missing = std::min(least_missing, missing_.size());
       if (is_cancelled || missing_.empty() || idle_rounds == kIdleRounds ||
@@ -118,6 +119,14 @@ class Recovery {
     points_.erase(points_.begin() + apex_);
     result.points = std::move(points_);
     return result;
+  }
+
+  /// True if no edge of a missing triangle is missing.
+  bool are_edges_there() {
+    return std::ranges::all_of(missing_, [this](Index i) {
+      return std::ranges::all_of(edges_of(triangles_[i].vertices),
+                                 [this](const VertexPair& e) { return is_edge(e[0], e[1]); });
+    });
   }
 
   /// Searches once for each missing triangle. False if the caller cancels.

@@ -6,25 +6,6 @@
 
 namespace watertight::delaunay {
 
-Triangle inward_face(const geometry::Tetrahedron& tetrahedron, std::size_t corner) {
-  static constexpr std::array<std::array<std::size_t, 3>, 4> kFaces = {
-      {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
-  const auto& [a, b, c] = kFaces[corner];
-  return {tetrahedron[a], tetrahedron[b], tetrahedron[c]};
-}
-
-Triangle sorted(Triangle triangle) {
-  std::sort(triangle.begin(), triangle.end());
-  return triangle;
-}
-
-Triangle rotated(Triangle triangle) {
-  std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
-  return triangle;
-}
-
-Triangle reversed(const Triangle& triangle) { return {triangle[0], triangle[2], triangle[1]}; }
-
 TetrahedronMesh::TetrahedronMesh(std::vector<geometry::Tetrahedron> tetrahedra,
                                  std::size_t vertex_count)
     : tetrahedra_(std::move(tetrahedra)), at_vertex_(vertex_count, kNone) {
@@ -57,7 +38,8 @@ void TetrahedronMesh::pair(std::span<const Half> sorted_halves) {
 
 void TetrahedronMesh::replace(std::span<const Index> old_ones,
                               std::span<const geometry::Tetrahedron> new_ones) {
-  std::vector<Half> halves;
+  std::vector<Half>& halves = halves_;
+  halves.clear();
   for (const Index t : old_ones) {
     for (std::size_t corner = 0; corner < 4; ++corner) {
       const Index other = neighbours_[t][corner];

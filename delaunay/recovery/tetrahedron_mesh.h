@@ -17,12 +17,25 @@ namespace watertight::delaunay {
 
 /// The face of a positive tetrahedron opposite to a corner, turned so that orient3d(face, corner)
 /// is positive.
-Triangle inward_face(const geometry::Tetrahedron& tetrahedron, std::size_t corner);
+inline Triangle inward_face(const geometry::Tetrahedron& t, std::size_t corner) {
+  constexpr std::array<std::array<std::size_t, 3>, 4> kFaces = {
+      {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
+  const auto& [a, b, c] = kFaces[corner];
+  return {t[a], t[b], t[c]};
+}
 /// A triangle with its vertices in increasing order.
-Triangle sorted(Triangle triangle);
+inline Triangle sorted(const Triangle& t) {
+  const Index low = std::min(t[0], t[1]);
+  const Index high = std::max(t[0], t[1]);
+  return {std::min(low, t[2]), std::max(low, std::min(high, t[2])), std::max(high, t[2])};
+}
 /// A triangle with its smallest vertex first, its orientation kept.
-Triangle rotated(Triangle triangle);
-Triangle reversed(const Triangle& triangle);
+inline Triangle rotated(const Triangle& t) {
+  if (t[1] < t[0] && t[1] < t[2]) return {t[1], t[2], t[0]};
+  if (t[2] < t[0] && t[2] < t[1]) return {t[2], t[0], t[1]};
+  return t;
+}
+inline Triangle reversed(const Triangle& t) { return {t[0], t[2], t[1]}; }
 
 /// Two vertices, the smaller one first.
 using VertexPair = std::array<Index, 2>;
@@ -65,6 +78,7 @@ class TetrahedronMesh {
   std::vector<std::array<Index, 4>> neighbours_;
   std::vector<Index> at_vertex_;
   std::vector<Index> empty_;
+  std::vector<Half> halves_;  // of one replacement
 };
 
 }  // namespace watertight::delaunay

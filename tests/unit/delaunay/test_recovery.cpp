@@ -7,6 +7,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <random>
 #include <set>
 #include <vector>
@@ -17,7 +18,9 @@
 #include "delaunay/recovery/flips.h"
 #include "delaunay/recovery/point_between.h"
 #include "delaunay/recovery/recover_faces.h"
+#include "delaunay/recovery/signs.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
+#include "geometry/predicates/predicates.h"
 #include "geometry/solid.h"
 #include "sample_solids.h"
 #include "tessellate/facets.h"
@@ -105,6 +108,65 @@ TEST_CASE("recovery does not depend on the numbering of the solid") {
     const std::vector<Point> expected = sorted_points(climb_alone(shape));
     for (unsigned seed = 0; seed < 4; ++seed) {
       CHECK(sorted_points(climb_alone(samples::shuffled(shape, seed))) == expected);
+    }
+  }
+}
+
+/// The shape seen in a mirror.
+Shape mirrored(Shape shape) {
+  for (Point& p : shape.vertices) p.x = -p.x + 0.0;
+  for (samples::Shell& shell : shape.shells) {
+    for (auto& facet : shell) {
+      for (auto& ring : facet) std::reverse(ring.begin(), ring.end());
+    }
+  }
+  return shape;
+}
+
+TEST_CASE("a solid in a mirror is recovered too") {
+  for (const Shape& shape : {samples::schoenhardt(), rounded_sphere(40, 900)}) {
+    const delaunay::LadderResult result = climb_alone(mirrored(shape));
+    REQUIRE(result.certificate.has_value());
+    CHECK(result.certificate->rung == delaunay::Rung::recovered);
+  }
+}
+
+TEST_CASE("recovery ends within 50 ms of processor time after the wish to cancel") {
+  const Shape sphere = rounded_sphere(60, 900);
+  for (const int polls : {5, 50, 100}) {
+    delaunay::LadderOptions options;
+    options.first_rung = delaunay::Rung::recovered;
+    int asked = 0;
+    std::clock_t wished = 0;
+    options.cancel = [&] {
+      if (++asked < polls) return false;
+      if (wished == 0) wished = std::clock();
+      return true;
+    };
+    const delaunay::LadderResult result = climb_alone(sphere, options);
+    REQUIRE(wished != 0);
+    CHECK(result.attempts.back().result == delaunay::RungOutcome::cancelled);
+    CHECK(static_cast<double>(std::clock() - wished) < 0.05 * CLOCKS_PER_SEC);
+  }
+}
+
+TEST_CASE("signs for one box agree with the exact signs") {
+  // Small whole numbers, of which many are coplanar, fractions, and sizes that leave doubles.
+  for (const double unit : {1.0, 0.1, 0x1p50, 1e-160, 1e150}) {
+    std::mt19937 random(7);
+    std::vector<Point> points;
+    for (int i = 0; i < 64; ++i) {
+      const auto coordinate = [&] { return unit * static_cast<double>(random() % 8); };
+      points.push_back({coordinate(), coordinate(), coordinate()});
+    }
+    const delaunay::Signs signs(geometry::box_of(points));
+    for (int i = 0; i < 2000; ++i) {
+      const auto any = [&]() -> const Point& { return points[random() % points.size()]; };
+      const Point& a = any();
+      const Point& b = any();
+      const Point& c = any();
+      const Point& d = any();
+      CHECK(signs.orient3d(a, b, c, d) == geometry::orient3d(a, b, c, d));
     }
   }
 }

@@ -155,8 +155,11 @@ class Examination {
     if (!faces.empty() && faces.back().facet >= solid_.facet_count()) {
       return refuse(CertificateRefusal::foreign_face, "a constrained face belongs to no facet");
     }
+    std::vector<Index> places;  // constrained face -> face of the complex
+    places.reserve(faces.size());
     for (const ConstrainedFace& face : faces) {
-      if (complex_.find(face.vertices) == kNone) {
+      places.push_back(complex_.find(face.vertices));
+      if (places.back() == kNone) {
         return refuse(CertificateRefusal::facet_not_conforming,
                       "a constrained face is not a face of the tetrahedralization", face.facet);
       }
@@ -175,16 +178,20 @@ class Examination {
                       "facet " + std::to_string(facet) + ": " + fault->reason, facet);
       }
       const auto& surface = std::get<FacetSurface>(checked);
-      if (Checked refused = take(facet, surface)) return refused;
+      const auto first = static_cast<std::size_t>(begin - faces.begin());
+      const auto own = std::span(std::as_const(places)).subspan(first, surface.faces.size());
+      if (Checked refused = take(facet, surface, own)) return refused;
       steps = surface.faces.size();
       begin = end;
     }
     return std::nullopt;
   }
 
-  Checked take(Index facet, const FacetSurface& surface) {
-    for (const Triangle& t : surface.faces) {
-      const Index place = complex_.find(t);
+  /// Takes the faces of a facet. Element i of `places` is face i in the complex.
+  Checked take(Index facet, const FacetSurface& surface, std::span<const Index> places) {
+    for (std::size_t i = 0; i < surface.faces.size(); ++i) {
+      const Triangle& t = surface.faces[i];
+      const Index place = places[i];
       const ComplexFace& face = complex_.faces[place];
       if (constraint_of_[place] != kNone) {
         return refuse(CertificateRefusal::not_a_boundary, "a face belongs to two facets", facet);

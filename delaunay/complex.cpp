@@ -148,12 +148,21 @@ bool is_met_once(std::span<const Point> points, std::span<const Triangle> hull, 
   return false;
 }
 
+/// Fills Complex::first from the sorted faces.
+void index_faces(std::size_t vertex_count, Complex& complex) {
+  complex.first.reserve(vertex_count + 1);
+  for (Index f = 0; f < complex.faces.size(); ++f) {
+    while (complex.first.size() <= complex.faces[f].vertices[0]) complex.first.push_back(f);
+  }
+  complex.first.resize(vertex_count + 1, static_cast<Index>(complex.faces.size()));
+}
+
 struct HullEdge {
-  Index low = 0;
-  Index high = 0;
-  Index face = 0;
+  Triangle key{};  // the smaller vertex, the larger vertex, the hull face
   Index opposite = 0;
-  friend auto operator<=>(const HullEdge&, const HullEdge&) = default;
+  bool has_edge_of(const HullEdge& other) const {
+    return key[0] == other.key[0] && key[1] == other.key[1];
+  }
 };
 
 std::optional<ComplexFault> check_edges(std::span<const Point> points,
@@ -163,18 +172,16 @@ std::optional<ComplexFault> check_edges(std::span<const Point> points,
   for (Index f = 0; f < hull.size(); ++f) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax(hull[f][k], hull[f][(k + 1) % 3]);
-      edges.push_back({low, high, f, hull[f][(k + 2) % 3]});
+      edges.push_back({{low, high, f}, hull[f][(k + 2) % 3]});
     }
   }
-  std::sort(edges.begin(), edges.end());
+  sort_by_vertices(edges, points.size(), [](const HullEdge& edge) { return edge.key; });
   using Kind = ComplexFault::Kind;
   for (std::size_t i = 0; i < edges.size(); i += 2) {
-    const bool is_pair = i + 1 < edges.size() && edges[i].low == edges[i + 1].low &&
-                         edges[i].high == edges[i + 1].high &&
-                         (i + 2 == edges.size() || edges[i + 2].low != edges[i].low ||
-                          edges[i + 2].high != edges[i].high);
+    const bool is_pair = i + 1 < edges.size() && edges[i + 1].has_edge_of(edges[i]) &&
+                         (i + 2 == edges.size() || !edges[i + 2].has_edge_of(edges[i]));
     if (!is_pair) return fault(Kind::not_convex, "a hull edge does not have two hull faces");
-    const Triangle& t = hull[edges[i].face];
+    const Triangle& t = hull[edges[i].key[2]];
     const Index other = edges[i + 1].opposite;
     if (std::find(t.begin(), t.end(), other) != t.end() ||
         geometry::orient3d(points[t[0]], points[t[1]], points[t[2]], points[other]) > 0) {
@@ -188,10 +195,13 @@ std::optional<ComplexFault> check_edges(std::span<const Point> points,
 
 Index Complex::find(Triangle vertices) const {
   sort_counting(vertices);
+  if (std::size_t{vertices[0]} + 1 >= first.size()) return kNone;
+  const auto begin = faces.begin() + first[vertices[0]];
+  const auto end = faces.begin() + first[vertices[0] + 1];
   const auto at = std::lower_bound(
-      faces.begin(), faces.end(), vertices,
+      begin, end, vertices,
       [](const ComplexFace& face, const Triangle& t) { return face.vertices < t; });
-  if (at == faces.end() || at->vertices != vertices) return kNone;
+  if (at == end || at->vertices != vertices) return kNone;
   return static_cast<Index>(at - faces.begin());
 }
 
@@ -210,6 +220,7 @@ std::optional<ComplexFault> build_complex(const Tetrahedralization& data, Comple
     for (const Side& side : sides_of(t, number)) sides.push_back(side);
   }
   sort_by_vertices(sides, data.points.size(), [](const Side& side) { return side.vertices; });
+  complex.faces.reserve(sides.size());
   for (const Side& side : sides) {
     if (complex.faces.empty() || complex.faces.back().vertices != side.vertices) {
       complex.faces.push_back({side.vertices, kNone, kNone});
@@ -222,6 +233,7 @@ std::optional<ComplexFault> build_complex(const Tetrahedralization& data, Comple
     }
     place = side.tetrahedron;
   }
+  index_faces(data.points.size(), complex);
   return std::nullopt;
 }
 

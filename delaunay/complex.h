@@ -26,7 +26,9 @@ struct ComplexFace {
 /// The faces in lexicographic order of their sorted vertices.
 struct Complex {
   std::vector<ComplexFace> faces;
-  /// Index of the face with these vertices (in any order), or kNone. Cost: logarithmic.
+  std::vector<Index> first;  // vertex -> the first face whose smallest vertex is not below it
+  /// Index of the face with these vertices (in any order), or kNone.
+  /// Cost: logarithmic in the faces with its smallest vertex.
   Index find(Triangle vertices) const;
 };
 

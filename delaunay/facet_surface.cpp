@@ -54,19 +54,20 @@ struct FacetSurfaces::Plane {
   double world_length = 0;  // a height divided by this is a distance in world units
 };
 
-/// The faces of a facet with their edges.
+/// The faces of a facet with their edges. One mesh takes facet after facet and keeps its memory.
 class FacetSurfaces::Mesh {
  public:
-  explicit Mesh(std::span<const ConstrainedFace> faces) {
-    faces_.reserve(faces.size());
-    vertices_.reserve(3 * faces.size());
+  void take(std::span<const ConstrainedFace> faces) {
+    faces_.clear();
+    vertices_.clear();
+    by_vertex_.clear();
     for (const ConstrainedFace& face : faces) {
       faces_.push_back(face.vertices);
       vertices_.insert(vertices_.end(), face.vertices.begin(), face.vertices.end());
     }
     std::sort(vertices_.begin(), vertices_.end());
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-    sides_ = geometry::sides_of_triangles(faces_, 0, static_cast<Index>(faces_.size()));
+    sort_sides();
   }
 
   const std::vector<Triangle>& faces() const { return faces_; }
@@ -77,23 +78,23 @@ class FacetSurfaces::Mesh {
   /// Turns the faces consistently. Returns the fault as a clause, or null.
   const char* turn() {
     if (!link()) return "an edge of its faces has more than two of them";
-    std::vector<char> is_seen(faces_.size(), 0);
-    std::vector<Index> pending{0};
-    is_seen[0] = 1;
+    is_seen_.assign(faces_.size(), 0);
+    pending_.assign(1, 0);
+    is_seen_[0] = 1;
     std::size_t seen = 1;
-    while (!pending.empty()) {
-      const Index f = pending.back();
-      pending.pop_back();
+    while (!pending_.empty()) {
+      const Index f = pending_.back();
+      pending_.pop_back();
       for (std::size_t k = 0; k < 3; ++k) {
         const Index g = neighbour_[f][k];
         if (g == kNone) continue;
         const bool agrees = runs(g, faces_[f][(k + 1) % 3], faces_[f][k]);
-        if (is_seen[g] != 0 && !agrees) return "its faces cannot be turned consistently";
-        if (is_seen[g] != 0) continue;
+        if (is_seen_[g] != 0 && !agrees) return "its faces cannot be turned consistently";
+        if (is_seen_[g] != 0) continue;
         if (!agrees) flip(g);
-        is_seen[g] = 1;
+        is_seen_[g] = 1;
         ++seen;
-        pending.push_back(g);
+        pending_.push_back(g);
       }
     }
     if (seen != faces_.size()) return "its faces are not connected";
@@ -114,7 +115,7 @@ class FacetSurfaces::Mesh {
   /// leaves a vertex more than once, and u elsewhere, lowers the Euler characteristic to
   /// 2 - 2g - components - t - u. If that is 2 - rings, and rings - t components are walked
   /// (each touch joins two), then g and u are 0.
-  bool is_disc(std::size_t rings) const {
+  bool is_disc(std::size_t rings) {
     std::size_t touches = 0;
     for (std::size_t i = 0; i + 1 < boundary_.size(); ++i) {
       if (boundary_[i].first == boundary_[i + 1].first) ++touches;
@@ -124,36 +125,70 @@ class FacetSurfaces::Mesh {
   }
 
   /// The vertices that are joined to `vertex` by an edge of a face, as (vertex, other).
-  std::span<const std::pair<Index, Index>> neighbours(Index vertex) const {
+  std::span<const std::pair<Index, Index>> neighbours(Index vertex) {
+    if (by_vertex_.empty()) list_neighbours();
     const auto begin =
         std::lower_bound(by_vertex_.begin(), by_vertex_.end(), std::pair(vertex, Index{0}));
     const auto end = std::upper_bound(begin, by_vertex_.end(), std::pair(vertex, kNone));
     return {begin, end};
   }
   bool has_edge(Index a, Index b) const {
-    return std::binary_search(by_vertex_.begin(), by_vertex_.end(), std::pair(a, b));
+    const std::uint64_t edge = edge_of(a, b);
+    const auto at =
+        std::lower_bound(sides_.begin(), sides_.end(), edge,
+                         [](const Side& side, std::uint64_t key) { return side.edge < key; });
+    return at != sides_.end() && at->edge == edge;
   }
 
  private:
-  using EdgeSides = std::span<const geometry::EdgeSide>;
+  /// One side of the edge between two vertices.
+  struct Side {
+    std::uint64_t edge = 0;  // the smaller vertex in the upper half, the larger in the lower
+    Index half_edge = 0;
+    bool has_edge_of(const Side& other) const { return edge == other.edge; }
+  };
+
+  static std::uint64_t edge_of(Index a, Index b) {
+    const auto [low, high] = std::minmax(a, b);
+    return std::uint64_t{low} << 32 | high;
+  }
+
+  void sort_sides() {
+    sides_.clear();
+    for (Index h = 0; h < 3 * faces_.size(); ++h) {
+      const Triangle& t = faces_[h / 3];
+      sides_.push_back({edge_of(t[h % 3], t[(h + 1) % 3]), h});
+    }
+    std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+      return a.edge != b.edge ? a.edge < b.edge : a.half_edge < b.half_edge;
+    });
+  }
+
+  /// Few facets need the neighbours of a vertex: those with a diagonal that is not an edge.
+  void list_neighbours() {
+    geometry::for_each_edge(std::span(std::as_const(sides_)), [&](std::span<const Side> sides) {
+      const auto low = static_cast<Index>(sides[0].edge >> 32);
+      const auto high = static_cast<Index>(sides[0].edge);
+      by_vertex_.emplace_back(low, high);
+      by_vertex_.emplace_back(high, low);
+    });
+    std::sort(by_vertex_.begin(), by_vertex_.end());
+  }
 
   /// Finds the neighbours of each face. Returns false if an edge has more than two faces. Requires
   /// the faces as given, not turned.
   bool link() {
     neighbour_.assign(faces_.size(), {kNone, kNone, kNone});
-    by_vertex_.reserve(2 * sides_.size());
+    edge_count_ = 0;
     bool is_surface = true;
-    geometry::for_each_edge(std::span(std::as_const(sides_)), [&](EdgeSides edge) {
+    geometry::for_each_edge(std::span(std::as_const(sides_)), [&](std::span<const Side> edge) {
       is_surface = is_surface && edge.size() <= 2;
       if (edge.size() == 2) {
         neighbour_of(edge[0].half_edge) = edge[1].half_edge / 3;
         neighbour_of(edge[1].half_edge) = edge[0].half_edge / 3;
       }
       ++edge_count_;
-      by_vertex_.emplace_back(edge[0].low, edge[0].high);
-      by_vertex_.emplace_back(edge[0].high, edge[0].low);
     });
-    std::sort(by_vertex_.begin(), by_vertex_.end());
     return is_surface;
   }
 
@@ -172,13 +207,13 @@ class FacetSurfaces::Mesh {
 
   /// The number of closed walks along the boundary. At the end of a boundary edge a walk turns
   /// through the fan of faces beside it, and goes on with the boundary edge at the end of the fan.
-  std::size_t boundary_walks() const {
+  std::size_t boundary_walks() {
     const auto place = [&](Index from, Index to) {
       return static_cast<std::size_t>(
           std::lower_bound(boundary_.begin(), boundary_.end(), std::pair(from, to)) -
           boundary_.begin());
     };
-    std::vector<std::size_t> next(boundary_.size());
+    next_.assign(boundary_.size(), 0);
     for (Index f = 0; f < faces_.size(); ++f) {
       for (std::size_t k = 0; k < 3; ++k) {
         if (neighbour_[f][k] != kNone) continue;
@@ -189,15 +224,15 @@ class FacetSurfaces::Mesh {
           face = neighbour_[face][at];
           at = corner(face, pivot);
         }
-        next[place(faces_[f][k], pivot)] = place(pivot, faces_[face][(at + 1) % 3]);
+        next_[place(faces_[f][k], pivot)] = place(pivot, faces_[face][(at + 1) % 3]);
       }
     }
     std::size_t walks = 0;
-    std::vector<char> is_seen(next.size(), 0);
-    for (std::size_t start = 0; start < next.size(); ++start) {
-      if (is_seen[start] != 0) continue;
+    is_seen_.assign(next_.size(), 0);
+    for (std::size_t start = 0; start < next_.size(); ++start) {
+      if (is_seen_[start] != 0) continue;
       ++walks;
-      for (std::size_t at = start; is_seen[at] == 0; at = next[at]) is_seen[at] = 1;
+      for (std::size_t at = start; is_seen_[at] == 0; at = next_[at]) is_seen_[at] = 1;
     }
     return walks;
   }
@@ -209,7 +244,7 @@ class FacetSurfaces::Mesh {
   }
 
   void collect_boundary() {
-    boundary_.reserve(2 * edge_count_ - sides_.size());
+    boundary_.clear();
     for (Index f = 0; f < faces_.size(); ++f) {
       for (std::size_t k = 0; k < 3; ++k) {
         if (neighbour_[f][k] == kNone) boundary_.emplace_back(faces_[f][k], faces_[f][(k + 1) % 3]);
@@ -220,10 +255,13 @@ class FacetSurfaces::Mesh {
 
   std::vector<Triangle> faces_;
   std::vector<Index> vertices_;
-  std::vector<geometry::EdgeSide> sides_;  // the sides of the faces as given
+  std::vector<Side> sides_;  // the sides of the faces as given, sorted
   std::vector<std::array<Index, 3>> neighbour_;
-  std::vector<std::pair<Index, Index>> by_vertex_;
+  std::vector<std::pair<Index, Index>> by_vertex_;  // empty until neighbours() is asked
   std::vector<std::pair<Index, Index>> boundary_;
+  std::vector<std::size_t> next_;  // edge of the boundary -> the edge on which a walk goes on
+  std::vector<char> is_seen_;
+  std::vector<Index> pending_;
   std::size_t edge_count_ = 0;
 };
 
@@ -235,7 +273,10 @@ FacetSurfaces::FacetSurfaces(const Solid& solid, const tessellate::FacetTriangle
       data_(tetrahedralization),
       unit_(unit),
       rounding_(steiner_rounding(solid.vertices())),
+      mesh_(std::make_unique<Mesh>()),
       facet_stamp_(solid.vertex_count(), kNone) {}
+
+FacetSurfaces::~FacetSurfaces() = default;
 
 std::span<const Triangle> FacetSurfaces::canonical_of(Index facet) const {
   return std::span(canonical_.triangles)
@@ -405,9 +446,9 @@ std::size_t FacetSurfaces::boundary_step(Index facet, const Mesh& mesh, Index cu
   return step == end ? boundary.size() : place_of(step);
 }
 
-std::optional<FacetFault> FacetSurfaces::check_rings(Index facet, const Mesh& mesh) const {
+std::optional<FacetFault> FacetSurfaces::check_rings(Index facet, const Mesh& mesh) {
   const auto& boundary = mesh.boundary();
-  std::vector<char> is_used(boundary.size(), 0);
+  is_used_.assign(boundary.size(), 0);
   std::size_t used = 0;
   const IndexRange rings = solid_.rings_of(facet);
   for (Index r = rings.begin; r < rings.end; ++r) {
@@ -418,11 +459,11 @@ std::optional<FacetFault> FacetSurfaces::check_rings(Index facet, const Mesh& me
       Index current = ring[i];
       while (current != to) {
         const std::size_t step = boundary_step(facet, mesh, current, ring[i], to);
-        if (step == boundary.size() || is_used[step] != 0) {
+        if (step == boundary.size() || is_used_[step] != 0) {
           return FacetFault{"ring edge (" + std::to_string(ring[i]) + ", " + std::to_string(to) +
                             ") is missing"};
         }
-        is_used[step] = 1;
+        is_used_[step] = 1;
         ++used;
         current = boundary[step].second;
         if (current == to) break;
@@ -473,7 +514,7 @@ std::optional<FacetFault> FacetSurfaces::check_area(Index facet,
 }
 
 /// True if edges of the faces lead from `from` to `to` along the straight segment.
-bool FacetSurfaces::has_chain(Index facet, const Mesh& mesh, Index from, Index to) const {
+bool FacetSurfaces::has_chain(Index facet, Mesh& mesh, Index from, Index to) const {
   double reached = 0;
   Index current = from;
   for (std::size_t step = 0; step < mesh.vertices().size(); ++step) {
@@ -498,7 +539,8 @@ std::variant<FacetSurface, FacetFault> FacetSurfaces::check(
     Index facet, std::span<const ConstrainedFace> faces) {
   if (canonical_of(facet).empty()) return FacetFault{"it has no canonical triangulation"};
   if (faces.empty()) return FacetFault{"it has no faces"};
-  Mesh mesh(faces);
+  Mesh& mesh = *mesh_;
+  mesh.take(faces);
   if (const char* wrong = mesh.turn()) return FacetFault{wrong};
   if (!mesh.is_disc(solid_.rings_of(facet).size())) {
     return FacetFault{"its faces do not form a disc"};

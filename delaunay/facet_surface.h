@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,7 +32,7 @@ std::array<double, 3> steiner_rounding(std::span<const Point> vertices);
 
 /// A facet's faces, turned so that their boundary is the facet's rings.
 struct FacetSurface {
-  std::vector<Triangle> faces;
+  std::span<const Triangle> faces;  // in the order of the faces checked; until the next check
   /// True if every diagonal of the canonical triangulation is a chain of edges of the faces: then
   /// both are the same surface.
   bool follows_canonical = true;
@@ -52,6 +53,9 @@ class FacetSurfaces {
   /// Keeps references to the first three; `unit` is a power of two per axis near the solid's size.
   FacetSurfaces(const Solid& solid, const tessellate::FacetTriangles& canonical,
                 const Tetrahedralization& tetrahedralization, const std::array<double, 3>& unit);
+  ~FacetSurfaces();
+  FacetSurfaces(const FacetSurfaces&) = delete;
+  FacetSurfaces& operator=(const FacetSurfaces&) = delete;
 
   /// Checks `faces`, which are all faces of `facet`. Cost: O(k log k) for k faces.
   std::variant<FacetSurface, FacetFault> check(Index facet, std::span<const ConstrainedFace> faces);
@@ -62,7 +66,7 @@ class FacetSurfaces {
 
   Plane plane_of(Index facet) const;
   bool is_steiner(Index vertex) const { return vertex >= data_.input_count; }
-  bool has_chain(Index facet, const Mesh& mesh, Index from, Index to) const;
+  bool has_chain(Index facet, Mesh& mesh, Index from, Index to) const;
   double height(const Plane& plane, Index vertex) const;
   std::optional<double> place_near_segment(Index vertex, Index from, Index to) const;
   bool is_contact(Index facet, Index vertex) const;
@@ -71,7 +75,7 @@ class FacetSurfaces {
   double largest_deviation(const Plane& plane, const Mesh& mesh) const;
   std::size_t boundary_step(Index facet, const Mesh& mesh, Index current, Index from,
                             Index to) const;
-  std::optional<FacetFault> check_rings(Index facet, const Mesh& mesh) const;
+  std::optional<FacetFault> check_rings(Index facet, const Mesh& mesh);
   std::optional<FacetFault> check_area(Index facet, std::span<const Triangle> faces) const;
   std::span<const Triangle> canonical_of(Index facet) const;
 
@@ -80,6 +84,8 @@ class FacetSurfaces {
   const Tetrahedralization& data_;
   std::array<double, 3> unit_;
   std::array<double, 3> rounding_;
+  std::unique_ptr<Mesh> mesh_;      // of the facet at work; its memory serves all facets
+  std::vector<char> is_used_;       // edge of the boundary -> a ring runs along it
   std::vector<Index> facet_stamp_;  // vertex -> the last facet whose rings have it
 };
 

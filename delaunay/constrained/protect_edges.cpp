@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t kFewSteiner = 1024;
 constexpr std::size_t kSteinerPerVertex = 24;
 constexpr std::size_t kMostSteiner = 16'384;
+/// A larger solid is not divided: each round makes its Delaunay tetrahedralization anew.
+constexpr std::size_t kMostGiven = 65'536;
 /// The reach of a place, as a share of its distance from the nearer end: the place in it that has
 /// the fewest bits is taken. The second one is for edges on which doubles are rare.
 constexpr std::array<double, 2> kReaches{1.0 / 32, 1.0 / 2};
@@ -75,6 +77,11 @@ class Protection {
 
   Result<ProtectedSolid> run() {
     const std::size_t given = points_.size();
+    if (given > kMostGiven) {
+      return Error{ErrorCode::limit_exceeded, "the edges of more than " +
+                                                  std::to_string(kMostGiven) +
+                                                  " vertices are not divided"};
+    }
     const std::size_t most_points =
         given + std::min(kFewSteiner + kSteinerPerVertex * given, kMostSteiner);
     while (points_.size() <= most_points) {

@@ -78,9 +78,9 @@ class Protection {
   Result<ProtectedSolid> run() {
     const std::size_t given = points_.size();
     if (given > kMostGiven) {
-      return Error{ErrorCode::limit_exceeded, "the edges of more than " +
-                                                  std::to_string(kMostGiven) +
-                                                  " vertices are not divided"};
+      return Error{
+          ErrorCode::limit_exceeded,
+          "the edges of more than " + std::to_string(kMostGiven) + " vertices are not divided"};
     }
     const std::size_t most_points =
         given + std::min(kFewSteiner + kSteinerPerVertex * given, kMostSteiner);

@@ -42,6 +42,9 @@ constexpr int kGrowths = 8;
 constexpr std::size_t kRounds = 16;
 /// The most rounds in a row after which no fewer triangles are missing than before.
 constexpr std::size_t kIdleRounds = 8;
+/// The same for a boundary of so many triangles or more, whose rounds take long.
+constexpr std::size_t kIdleRoundsOfMany = 3;
+constexpr std::size_t kManyTriangles = 50'000;
 /// The rounds of flips alone; the search begins after them.
 constexpr std::size_t kRoundsOfFlips = 3;
 /// The most parts of triangles for each triangle of the boundary.
@@ -77,6 +80,8 @@ class Recovery {
 
   Result<RecoveredFaces> run() {
     const std::size_t most_parts = 64 + kPartsPerTriangle * triangles_.size();
+    const std::size_t most_idle_rounds =
+        triangles_.size() < kManyTriangles ? kIdleRounds : kIdleRoundsOfMany;
     bool is_cancelled = !flip();
     std::size_t least_missing = missing_.size() + 1;
     std::size_t idle_rounds = 0;
@@ -85,7 +90,7 @@ class Recovery {
       if (is_search_due && !is_search_over_) is_cancelled = !search();
       idle_rounds = missing_.size() < least_missing ? 0 : idle_rounds + 1;
       least_missing = std::min(least_missing, missing_.size());
-      if (is_cancelled || missing_.empty() || idle_rounds == kIdleRounds ||
+      if (is_cancelled || missing_.empty() || idle_rounds == most_idle_rounds ||
           triangles_.size() > most_parts || flips_.is_exhausted()) {
         break;
       }

@@ -230,10 +230,15 @@ Solid make_huge(Random& random) {
       }
     }
   }
-  const auto factor = static_cast<std::int64_t>(kHugeLattice / largest);
-  AffineMap map;
-  for (std::size_t axis = 0; axis < 3; ++axis) map.matrix[axis][axis] = factor;
-  const Shape scaled = triangulated(shape_of(mapped(solid_of(shape, millimetres()), map)));
+  const double factor = std::floor(kHugeLattice / largest);
+  for (Shell& shell : shape) {
+    for (Facet& facet : shell) {
+      for (Ring& ring : facet) {
+        for (Point& p : ring) p = {p.x * factor, p.y * factor, p.z * factor};
+      }
+    }
+  }
+  const Shape scaled = triangulated(shape);
   const std::size_t vertices = solid_of(scaled, millimetres()).vertex_count();
   return solid_of(with_moved_vertices(scaled, random, vertices, 1), millimetres());
 }

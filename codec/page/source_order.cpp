@@ -160,7 +160,7 @@ class OrderCoder {
       const Point origin = solid_.vertices()[ring[0]];
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const Point& p = solid_.vertices()[ring[i]];
-        const Point& q = solid_.vertices()[ring[i + 1 < ring.size() ? i + 1 : 0]];
+        const Point& q = solid_.vertices()[ring[(i + 1) % ring.size()]];
         for (int axis = 0; axis < 3; ++axis) {
           const int u = (axis + 1) % 3;
           const int v = (axis + 2) % 3;
@@ -384,13 +384,11 @@ class OrderCoder {
       low = std::min(low, solid_.vertices()[vertex].z);
     }
     const Facing facing(facing_[facet]);
-    const Index* const across = &across_[solid_.arrays().ring_offsets[ring]];
     Index corner = 0;
-    Index last = size - 1;  // the corner before
-    for (; corner + 1 < size; last = corner++) {
-      const Index before = vertices[last];
+    for (; corner + 1 < size; ++corner) {
+      const Index before = vertices[(corner + size - 1) % size];
       const Index here = vertices[corner];
-      const Index after = vertices[corner + 1];
+      const Index after = vertices[(corner + 1) % size];
       const Point& p = solid_.vertices()[here];
       const Point& q = solid_.vertices()[after];
       const auto seen =
@@ -399,7 +397,9 @@ class OrderCoder {
       const auto seen_from_here =
           combine(Context<2>(bool{is_seen_[here]}), Context<2>(bool{is_seen_[after]}));
       const Context<2> is_oldest(oldest != kNone && number_[here] == oldest);
-      const Relation related = relation(across[corner], across[last]);
+      const Relation related =
+          relation(across_[solid_.arrays().ring_offsets[ring] + corner],
+                   across_[solid_.arrays().ring_offsets[ring] + (corner + size - 1) % size]);
       const Context<2> first(corner == 0);
       const Context<2> is_low(p.z <= low);
       const auto rise = sign_of(p.z, q.z);
@@ -426,10 +426,8 @@ class OrderCoder {
 
   void see(Index ring) {
     const auto vertices = solid_.ring(ring);
-    std::size_t corner = order_.ring_start[ring];
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const Index vertex = vertices[corner];
-      corner = corner + 1 < vertices.size() ? corner + 1 : 0;
+      const Index vertex = vertices[(order_.ring_start[ring] + i) % vertices.size()];
       if (is_seen_[vertex]) continue;
       is_seen_[vertex] = true;
       number_[vertex] = static_cast<Index>(first_use_.size());

@@ -23,8 +23,9 @@
 namespace watertight::delaunay {
 namespace {
 
-constexpr std::size_t kTestsPerTriangle = 16'384;
-constexpr std::size_t kFewTests = std::size_t{1} << 22U;
+/// Those of hard solids take up to 700 tests for each triangle.
+constexpr std::size_t kTestsPerTriangle = 2048;
+constexpr std::size_t kFewTests = std::size_t{1} << 20U;
 
 using TrianglesAtEdge = std::map<VertexPair, std::vector<std::size_t>>;
 

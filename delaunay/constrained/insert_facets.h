@@ -29,8 +29,8 @@ struct InsertedFacets {
 
 /// Requires the canonical Delaunay tetrahedralization of points in lexicographic order, and facets
 /// that meet in common vertices and edges only, the edges of whose rings are all edges of it. Then
-/// nothing is missing in the result unless a limit is reached: at most 16,384 geometric tests
-/// for each triangle given, and 2^22. Errors: cancelled. Cost: that of the tetrahedra
+/// nothing is missing in the result unless a limit is reached: at most 2,048 geometric tests
+/// for each triangle given, and 2^20. Errors: cancelled. Cost: that of the tetrahedra
 /// that missing triangles cross, squared for each connected part of a facet.
 /// Source: Diazzi, Panozzo, Vaxman, Attene, "Constrained Delaunay Tetrahedrization" (2023), section
 /// 4; Shewchuk (2002) for why a constrained Delaunay tetrahedralization exists. Departure: the

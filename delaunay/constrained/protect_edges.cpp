@@ -22,6 +22,8 @@ constexpr std::size_t kSteinerPerVertex = 24;
 constexpr std::size_t kMostSteiner = 16'384;
 /// A larger solid is not divided: each round makes its Delaunay tetrahedralization anew.
 constexpr std::size_t kMostGiven = 65'536;
+/// The most rounds, each of which divides all edges that are missing; those of hard solids take 40.
+constexpr std::size_t kMostRounds = 64;
 /// The reach of a place, as a share of its distance from the nearer end: the place in it that has
 /// the fewest bits is taken. The second one is for edges on which doubles are rare.
 constexpr std::array<double, 2> kReaches{1.0 / 32, 1.0 / 2};
@@ -84,7 +86,7 @@ class Protection {
     }
     const std::size_t most_points =
         given + std::min(kFewSteiner + kSteinerPerVertex * given, kMostSteiner);
-    while (points_.size() <= most_points) {
+    for (std::size_t round = 0; round < kMostRounds && points_.size() <= most_points; ++round) {
       Result<CanonicalDelaunay> delaunay = canonical_delaunay(
           scaled_to_integers(points_), 4096 + kTetrahedraPerVertex * points_.size(), is_cancelled_);
       if (!delaunay) return delaunay.error();
@@ -92,8 +94,9 @@ class Protection {
       if (missing.empty()) return result(*std::move(delaunay));
       if (Status divided = divide(missing); !divided) return divided.error();
     }
-    return Error{ErrorCode::limit_exceeded,
-                 "the edges need more than " + std::to_string(most_points) + " vertices"};
+    return Error{ErrorCode::limit_exceeded, "the edges need more than " +
+                                                std::to_string(most_points) + " vertices, or " +
+                                                std::to_string(kMostRounds) + " rounds"};
   }
 
  private:

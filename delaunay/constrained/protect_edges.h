@@ -27,7 +27,8 @@ struct ProtectedSolid {
 /// Steiner vertex lies exactly on its edge, at a fraction of a power of two; the set of Steiner
 /// vertices depends on the coordinates alone.
 /// Errors: limit_exceeded where there would be more Steiner vertices than 24 for each vertex and
-/// 1,024, or than 16,384, for more than 65,536 vertices, or where doubles have no point on an edge;
+/// 1,024, or than 16,384, for more than 65,536 vertices, after 64
+/// rounds, or where doubles have no point on an edge;
 /// cancelled. Cost: at most some tens of Delaunay tetrahedralizations. Source: H. Si, K. Gärtner,
 /// "Meshing piecewise linear complexes by constrained Delaunay tetrahedralizations" (2005), section
 /// 3: the vertex that sees an edge under the largest angle tells how far from an end the edge is

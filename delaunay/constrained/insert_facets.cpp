@@ -29,11 +29,6 @@ constexpr std::size_t kFewTests = std::size_t{1} << 20U;
 
 using TrianglesAtEdge = std::map<VertexPair, std::vector<std::size_t>>;
 
-template <class Vertices>
-bool has_vertex(const Vertices& vertices, Index vertex) {
-  return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
-}
-
 Index opposite(const Triangle& triangle, const VertexPair& edge) {
   return *std::find_if(triangle.begin(), triangle.end(),
                        [&](Index v) { return v != edge[0] && v != edge[1]; });

@@ -2,6 +2,7 @@
 #include "delaunay/constrained/wrap_cavity.h"
 
 #include <algorithm>
+#include <array>
 
 #include "delaunay/constrained/perturbed_sphere.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
@@ -10,11 +11,6 @@
 
 namespace watertight::delaunay {
 namespace {
-
-template <class Vertices>
-bool has_vertex(const Vertices& vertices, Index vertex) {
-  return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
-}
 
 class Wrapping {
  public:
@@ -75,7 +71,7 @@ class Wrapping {
   bool is_free(const Triangle& face) {
     const Box box = box_of(face);
     for (const Triangle& other : front_) {
-      if (!overlap(box, box_of(other))) continue;
+      if (!box.overlaps(box_of(other))) continue;
       if (!budget_.take()) return false;
       if (geometry::is_intersection(geometry::classify_contact(points_, face, other))) return false;
     }
@@ -104,18 +100,7 @@ class Wrapping {
   }
 
   Box box_of(const Triangle& t) const {
-    Box box{at(t[0]), at(t[0])};
-    for (const Index vertex : {t[1], t[2]}) {
-      const Point& p = at(vertex);
-      box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
-      box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
-    }
-    return box;
-  }
-
-  static bool overlap(const Box& a, const Box& b) {
-    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-           a.min.z <= b.max.z && b.min.z <= a.max.z;
+    return geometry::box_of(std::array{at(t[0]), at(t[1]), at(t[2])});
   }
 
   std::span<const Point> points_;

@@ -155,11 +155,6 @@ class Search {
     return found;
   }
 
-  template <class Vertices>
-  static bool has_vertex(const Vertices& vertices, Index vertex) {
-    return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
-  }
-
   /// True if a tetrahedron over a triangle of the front fits between the others.
   bool is_inside(const std::vector<Triangle>& front,
                  const geometry::Tetrahedron& tetrahedron) const {
@@ -205,13 +200,7 @@ class Search {
   }
 
   Box box_of(const Triangle& t) const {
-    Box box{at(t[0]), at(t[0])};
-    for (const Index vertex : {t[1], t[2]}) {
-      const Point& p = at(vertex);
-      box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y), std::min(box.min.z, p.z)};
-      box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y), std::max(box.max.z, p.z)};
-    }
-    return box;
+    return geometry::box_of(std::array{at(t[0]), at(t[1]), at(t[2])});
   }
 
   /// Whether a box and the box of a triangle have a point in common.

@@ -52,10 +52,6 @@ constexpr std::size_t kPartsPerTriangle = 4;
 /// The number of triangles after which the search ends if it did not find half of them.
 constexpr std::size_t kSample = 256;
 
-bool has_vertex(const geometry::Tetrahedron& tetrahedron, Index vertex) {
-  return std::find(tetrahedron.begin(), tetrahedron.end(), vertex) != tetrahedron.end();
-}
-
 class Recovery {
  public:
   Recovery(std::span<const Point> points, std::vector<geometry::Tetrahedron> tetrahedra,

@@ -15,6 +15,11 @@
 
 namespace watertight::delaunay {
 
+/// True if a triangle or a tetrahedron has a vertex.
+template <class Vertices>
+bool has_vertex(const Vertices& vertices, Index vertex) {
+  return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
+}
 /// The face of a positive tetrahedron opposite to a corner, turned so that orient3d(face, corner)
 /// is positive.
 inline Triangle inward_face(const geometry::Tetrahedron& t, std::size_t corner) {

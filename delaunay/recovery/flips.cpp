@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "geometry/predicates/predicates.h"
 
 namespace watertight::delaunay {
 namespace {
-
-/// The most times that a ring is shortened for one edge or triangle.
-constexpr std::size_t kShrinks = 4;
 
 template <class Vertices>
 bool has(const Vertices& vertices, Index vertex) {
@@ -39,21 +37,14 @@ void sort_once(std::vector<Part>& parts) {
 /// The other two vertices x, y of a positive tetrahedron with p and q, so that (p, q, x, y) is
 /// positive.
 std::array<Index, 2> others(const geometry::Tetrahedron& t, Index p, Index q) {
-  const std::size_t i = corner_of(t, p);
-  const std::size_t j = corner_of(t, q);
-  std::array<std::size_t, 2> rest{};
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (k != i && k != j) rest[count++] = k;
-  }
-  // The parity of the permutation (i, j, rest[0], rest[1]).
-  const std::array<std::size_t, 4> order{i, j, rest[0], rest[1]};
-  bool is_odd = false;
-  for (std::size_t a = 0; a < 4; ++a) {
-    for (std::size_t b = a + 1; b < 4; ++b) is_odd = is_odd != (order[a] > order[b]);
-  }
-  if (is_odd) std::swap(rest[0], rest[1]);
-  return {t[rest[0]], t[rest[1]]};
+  // [i][j] are the corners k, l for which the permutation (i, j, k, l) is even.
+  constexpr std::array<std::array<std::array<std::uint8_t, 2>, 4>, 4> kRest = {
+      {{{{0, 0}, {2, 3}, {3, 1}, {1, 2}}},
+       {{{3, 2}, {0, 0}, {0, 3}, {2, 0}}},
+       {{{1, 3}, {3, 0}, {0, 0}, {0, 1}}},
+       {{{2, 1}, {0, 2}, {1, 0}, {0, 0}}}}};
+  const auto [x, y] = kRest[corner_of(t, p)][corner_of(t, q)];
+  return {t[x], t[y]};
 }
 
 Index other_apex(const geometry::Tetrahedron& t, const Triangle& face) {
@@ -78,10 +69,11 @@ void KeptParts::add(const Triangle& sorted) {
 /// counts too, but all of them less than one face or edge that is in the way.
 class Flips::Obstacles {
  public:
-  static Obstacles of_segment(const Flips& flips, Index a, Index b) {
+  /// Of the segment that turns_ began with.
+  static Obstacles of_segment(Flips& flips, Index a, Index b) {
     return {flips, {a, b}, std::nullopt};
   }
-  static Obstacles of_triangle(const Flips& flips, const Triangle& triangle) {
+  static Obstacles of_triangle(Flips& flips, const Triangle& triangle) {
     return {flips, {}, triangle};
   }
   Obstacles with_ring(const VertexPair& edge) const {
@@ -92,21 +84,22 @@ class Flips::Obstacles {
   }
 
   int of_face(const Triangle& face) const {
-    const bool is_crossed = !triangle_ && flips_.crosses_face(segment_[0], segment_[1], face);
+    const bool is_crossed =
+        !triangle_ && flips_.segment_crosses_face(segment_[0], segment_[1], face);
     const bool is_in_ring = ring_ && has(face, (*ring_)[0]) && has(face, (*ring_)[1]);
     return (is_crossed ? weight_ : 0) + (is_in_ring ? 1 : 0);
   }
   int of_edge(const VertexPair& edge) const {
     const bool is_crossed = triangle_ ? flips_.crosses_face(edge[0], edge[1], *triangle_)
-                                      : flips_.crosses_edge(segment_[0], segment_[1], edge);
+                                      : flips_.segment_crosses_edge(segment_[0], segment_[1], edge);
     return is_crossed ? weight_ : 0;
   }
 
  private:
-  Obstacles(const Flips& flips, const VertexPair& segment, const std::optional<Triangle>& triangle)
+  Obstacles(Flips& flips, const VertexPair& segment, const std::optional<Triangle>& triangle)
       : flips_(flips), segment_(segment), triangle_(triangle) {}
 
-  const Flips& flips_;
+  Flips& flips_;
   VertexPair segment_;
   std::optional<Triangle> triangle_;  // or else the segment
   std::optional<VertexPair> ring_;
@@ -202,9 +195,19 @@ bool Flips::crosses_face(Index a, Index b, const Triangle& face) const {
   return side(p, q, r, a) * side(p, q, r, b) < 0;
 }
 
-bool Flips::crosses_edge(Index a, Index b, const VertexPair& edge) const {
+bool Flips::segment_crosses_face(Index a, Index b, const Triangle& face) {
+  if (has(face, a) || has(face, b)) return false;
+  const auto [p, q, r] = face;
+  const int first = turns_.turn(p, q);
+  if (first == 0 || turns_.turn(q, r) != first || turns_.turn(r, p) != first) return false;
+  return signs_.orient3d(points_[p], points_[q], points_[r], points_[a]) *
+             signs_.orient3d(points_[p], points_[q], points_[r], points_[b]) <
+         0;
+}
+
+bool Flips::segment_crosses_edge(Index a, Index b, const VertexPair& edge) {
   const auto [p, q] = edge;
-  if (p == a || p == b || q == a || q == b || side(a, b, p, q) != 0) return false;
+  if (p == a || p == b || q == a || q == b || turns_.turn(p, q) != 0) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const auto turn = [&](Index i, Index j, Index k) {
       return geometry::orient2d(points_[i], points_[j], points_[k], axis);
@@ -234,15 +237,14 @@ const Flips::Crossings& Flips::crossings(Index a, Index b) {
     --visits_left_;
     const geometry::Tetrahedron& corners = mesh_.tetrahedron(t);
     const std::size_t start = corner_of(corners, a);
-    if (start < 4 && !is_before(a, b, inward_face(corners, start))) continue;
+    if (start < 4 && !is_before(b, inward_face(corners, start))) continue;
     // turns[i][j] is how the edge of corners i and j turns around the segment.
     std::array<std::array<int, 4>, 4> turns{};
     for (std::size_t i = 0; i < 4; ++i) {
       if (corners[i] == a || corners[i] == b) continue;
       for (std::size_t j = 0; j < i; ++j) {
         if (corners[j] == a || corners[j] == b) continue;
-        turns[i][j] =
-            signs_.orient3d(points_[a], points_[b], points_[corners[i]], points_[corners[j]]);
+        turns[i][j] = turns_.turn(corners[i], corners[j]);
         turns[j][i] = -turns[i][j];
         if (turns[i][j] == 0) add_crossed_edge(a, b, {pair_of(corners[i], corners[j]), t});
       }
@@ -269,15 +271,19 @@ const Flips::Crossings& Flips::crossings(Index a, Index b) {
   return found;
 }
 
-/// False if the ray from `a` through `b` misses a face, on the inner side of which `a` lies.
-bool Flips::is_before(Index a, Index b, const Triangle& face) const {
+/// False if the ray from the start of the segment through its end `b` misses a face, on the inner
+/// side of which the start lies.
+bool Flips::is_before(Index b, const Triangle& face) {
+  const auto is_beside = [&](Index p, Index q) {
+    return p == b || q == b || turns_.turn(p, q) <= 0;
+  };
   const auto [p, q, r] = face;
-  return side(a, b, p, q) <= 0 && side(a, b, q, r) <= 0 && side(a, b, r, p) <= 0;
+  return is_beside(p, q) && is_beside(q, r) && is_beside(r, p);
 }
 
 /// Adds an edge in one plane with a segment if the segment crosses it, and goes on around it.
 void Flips::add_crossed_edge(Index a, Index b, const MeshEdge& edge) {
-  if (!crosses_edge(a, b, edge.vertices)) return;
+  if (!segment_crosses_edge(a, b, edge.vertices)) return;
   found_.edges.push_back(edge);
   const std::optional<Ring> ring = ring_of(edge);
   if (ring) pending_.insert(pending_.end(), ring->tetrahedra.begin(), ring->tetrahedra.end());
@@ -289,9 +295,10 @@ void Flips::add_crossed_edge(Index a, Index b, const MeshEdge& edge) {
 class Flips::RingTriangulation {
  public:
   /// Finds only triangulations with fewer than `limit` obstacles.
-  RingTriangulation(const Flips& flips, const Ring& ring, const Obstacles& obstacles, int limit)
+  RingTriangulation(Flips& flips, const Ring& ring, const Obstacles& obstacles, int limit)
       : flips_(flips), ring_(ring), obstacles_(obstacles), limit_(limit) {
     const std::size_t n = ring.vertices.size();
+    for (std::size_t i = 0; i + 1 < n; ++i) best_[i][i + 1] = {true, 0, 0, 0};
     for (std::size_t length = 2; length < n; ++length) {
       for (std::size_t i = 0; i + length < n; ++i) choose_middle(i, i + length);
     }
@@ -321,10 +328,10 @@ class Flips::RingTriangulation {
  private:
   /// The best triangulation of the vertices from one to another.
   struct Best {
-    bool exists = true;
-    int obstacles = 0;
-    int kept = 0;
-    std::size_t middle = 0;  // the third vertex of the triangle at both ends
+    bool exists;
+    int obstacles;
+    int kept;
+    std::size_t middle;  // the third vertex of the triangle at both ends
   };
 
   const Best& whole() const { return best_[0][ring_.vertices.size() - 1]; }
@@ -334,11 +341,17 @@ class Flips::RingTriangulation {
     sum.kept += flips_.kept_.has(face) ? 1 : 0;
   }
 
+  int side_of(std::size_t i, std::size_t k, std::size_t j, Index end) const {
+    const RingList& v = ring_.vertices;
+    const std::vector<Point>& points = flips_.points_;
+    return flips_.signs_.orient3d(points[v[i]], points[v[k]], points[v[j]], points[end]);
+  }
+
   void choose_middle(std::size_t i, std::size_t j) {
     const auto [p, q] = ring_.edge;
     const RingList& v = ring_.vertices;
     Best& best = best_[i][j];
-    best.exists = false;
+    best = {false, 0, 0, 0};
     for (std::size_t k = i + 1; k < j; ++k) {
       const Best& left = best_[i][k];
       const Best& right = best_[k][j];
@@ -347,10 +360,7 @@ class Flips::RingTriangulation {
       const auto is_worse = [&] {
         return sum.obstacles >= limit_ || (best.exists && sum.obstacles > best.obstacles);
       };
-      if (is_worse() || flips_.side(v[i], v[k], v[j], q) <= 0 ||
-          flips_.side(v[i], v[k], v[j], p) >= 0) {
-        continue;
-      }
+      if (is_worse() || side_of(i, k, j, q) <= 0 || side_of(i, k, j, p) >= 0) continue;
       add_face(sum, sorted({v[i], v[k], v[j]}));
       if (is_worse()) continue;
       const bool is_better = !best.exists || std::pair(sum.obstacles, -sum.kept) <
@@ -363,14 +373,16 @@ class Flips::RingTriangulation {
     for (const Index end : ring_.edge) add_face(best, sorted({v[i], v[j], end}));
   }
 
-  const Flips& flips_;
+  Flips& flips_;
   const Ring& ring_;
   const Obstacles& obstacles_;
   int limit_;
-  std::array<std::array<Best, kLargestRing>, kLargestRing> best_{};
+  // [i][j] is set for i < j only: most rings are short.
+  std::array<std::array<Best, kLargestRing>, kLargestRing> best_;
 };
 
 std::array<double, 2> Flips::middle_of_crossings(Index a, Index b) {
+  turns_.begin(a, b);
   const Crossings& crossed = crossings(a, b);
   std::vector<double> places;
   const auto add = [&](double before, double after) {
@@ -463,24 +475,40 @@ bool Flips::shrink_ring(const MeshEdge& edge, const Obstacles& obstacles) {
   return false;
 }
 
-bool Flips::recover_edge(Index a, Index b) {
+bool Flips::is_there(const MeshEdge& edge) const {
+  const geometry::Tetrahedron& t = mesh_.tetrahedron(edge.tetrahedron);
+  return has(t, edge.vertices[0]) && has(t, edge.vertices[1]);
+}
+
+bool Flips::is_there(const MeshFace& face) const {
+  const geometry::Tetrahedron& t = mesh_.tetrahedron(face.tetrahedron);
+  return !has(face.vertices, t[face.corner]) &&
+         std::ranges::all_of(face.vertices, [&](Index vertex) { return has(t, vertex); });
+}
+
+bool Flips::recover_edge(Index a, Index b, std::size_t shrinks) {
+  if (tetrahedron_at(a, b) != kNone) return true;
+  turns_.begin(a, b);
   const Obstacles obstacles = Obstacles::of_segment(*this, a, b);
-  const auto exchange = [&](const MeshFace& face) { return exchange_face(face, obstacles); };
-  const auto remove = [&](const MeshEdge& edge) { return remove_edge(edge, obstacles); };
   const auto shrink = [&](const MeshEdge& edge) { return shrink_ring(edge, obstacles); };
-  std::size_t shrinks_left = kShrinks;
-  while (tetrahedron_at(a, b) == kNone) {
+  do {
     const Crossings& found = crossings(a, b);
     if (is_exhausted() || cancellation_.is_due_and_wanted(found.around.size())) return false;
-    if (std::ranges::any_of(found.edges, remove) || std::ranges::any_of(found.faces, exchange) ||
-        std::ranges::any_of(found.around, remove)) {
-      continue;
+    std::size_t flips = 0;
+    const auto remove = [&](const MeshEdge& edge) {
+      if (is_there(edge) && remove_edge(edge, obstacles)) ++flips;
+    };
+    std::ranges::for_each(found.edges, remove);
+    for (const MeshFace& face : found.faces) {
+      if (is_there(face) && exchange_face(face, obstacles)) ++flips;
     }
-    if (shrinks_left-- == 0) return false;
+    std::ranges::for_each(found.around, remove);
+    if (flips > 0) continue;
+    if (shrinks-- == 0) return false;
     if (!std::ranges::any_of(found.edges, shrink) && !std::ranges::any_of(found.around, shrink)) {
       return false;
     }
-  }
+  } while (tetrahedron_at(a, b) == kNone);
   return true;
 }
 

@@ -45,6 +45,9 @@ class KeptParts {
   std::unordered_set<std::uint64_t, Hash> edges_;
 };
 
+/// The most times that a ring is shortened for one edge or triangle.
+inline constexpr std::size_t kShrinks = 4;
+
 /// The most vertices around an edge that is removed.
 inline constexpr std::size_t kLargestRing = 12;
 
@@ -87,15 +90,16 @@ class Flips {
         mesh_(mesh),
         kept_(kept),
         signs_(geometry::box_of(points)),
+        turns_(points, signs_),
         visits_left_(visits),
         cancellation_(is_cancelled) {}
 
   /// True if the visits have ended: answers may say "no" where "yes" is right.
   bool is_exhausted() const { return visits_left_ == 0; }
 
-  /// Makes the segment between two vertices an edge. False if the flips end before, or the caller
-  /// cancels.
-  bool recover_edge(Index a, Index b);
+  /// Makes the segment between two vertices an edge, and shortens rings at most `shrinks` times.
+  /// False if the flips end before, or the caller cancels.
+  bool recover_edge(Index a, Index b, std::size_t shrinks = kShrinks);
   /// Makes a triangle, all edges of which are there, a face. False if the flips end before, or the
   /// caller cancels.
   bool recover_face(const Triangle& triangle);
@@ -154,12 +158,17 @@ class Flips {
   std::array<double, 3> rounded_product(Index a, Index b, Index c) const;
   std::optional<Ring> ring_of(const MeshEdge& edge) const;
   bool crosses_face(Index a, Index b, const Triangle& face) const;
-  bool crosses_edge(Index a, Index b, const VertexPair& edge) const;
+  /// The same for the segment that turns_ began with.
+  bool segment_crosses_face(Index a, Index b, const Triangle& face);
+  bool segment_crosses_edge(Index a, Index b, const VertexPair& edge);
+  /// True if the tetrahedron with which a part was found still has it.
+  bool is_there(const MeshEdge& edge) const;
+  bool is_there(const MeshFace& face) const;
   /// The first tetrahedron of the star of a vertex that belongs, or kNone.
   template <class Belongs>
   Index find_in_star(Index vertex, const Belongs& belongs);
   const Crossings& crossings(Index a, Index b);
-  bool is_before(Index a, Index b, const Triangle& face) const;
+  bool is_before(Index b, const Triangle& face);
   void add_crossed_edge(Index a, Index b, const MeshEdge& edge);
   std::vector<MeshEdge> edges_through(const Triangle& triangle);
   /// Replaces the two tetrahedra at a face by three.
@@ -173,6 +182,7 @@ class Flips {
   TetrahedronMesh& mesh_;
   const KeptParts& kept_;
   Signs signs_;
+  SegmentTurns turns_;
   std::size_t visits_left_;
   Cancellation cancellation_;
   std::vector<Index> star_;

@@ -159,9 +159,12 @@ class Recovery {
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    for (const auto& [a, b] : edges) {
-      if (cancellation_.is_wanted()) return false;
-      flips_.recover_edge(a, b);
+    // Most edges that are in each other's way are made before rings are shortened for one of them.
+    for (const std::size_t shrinks : {std::size_t{0}, kShrinks}) {
+      for (const auto& [a, b] : edges) {
+        if (cancellation_.is_wanted()) return false;
+        flips_.recover_edge(a, b, shrinks);
+      }
     }
     for (const Index i : missing_) {
       if (cancellation_.is_wanted()) return false;

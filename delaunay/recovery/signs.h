@@ -3,6 +3,9 @@
 // Exact signs for points in one box, inlined into the loops of this folder. Private to delaunay/.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "geometry/point.h"
 #include "geometry/predicates/predicates.h"
 
@@ -33,14 +36,68 @@ class Signs {
     const Point w{d.x - a.x, d.y - a.y, d.z - a.z};
     const double value = w.x * (u.y * v.z - u.z * v.y) + w.y * (u.z * v.x - u.x * v.z) +
                          w.z * (u.x * v.y - u.y * v.x);
+    const int sign = decided(value);
+    return sign != 0 ? sign : geometry::orient3d(a, b, c, d);
+  }
+
+  /// The sign of orient3d from its rounded value, summed up as above; 0 if that does not decide.
+  int decided(double value) const {
     // An overflow makes the bound infinite or the value no number: neither is decided here.
-    if (value > error_) return 1;
-    if (value < -error_) return -1;
-    return geometry::orient3d(a, b, c, d);
+    return (value > error_ ? 1 : 0) - (value < -error_ ? 1 : 0);
   }
 
  private:
   double error_ = 0;
+};
+
+/// How edges turn around one segment. What a sign needs of a vertex is computed once.
+class SegmentTurns {
+ public:
+  /// Keeps a reference.
+  explicit SegmentTurns(const std::vector<Point>& points, const Signs& signs)
+      : points_(points), signs_(signs) {}
+
+  /// Begins with another segment.
+  void begin(Index a, Index b) {
+    a_ = a;
+    b_ = b;
+    if (of_vertex_.size() < points_.size()) of_vertex_.resize(points_.size());
+    ++segment_;
+  }
+
+  /// The sign of orient3d(a, b, p, q) for vertices p and q that are not ends of the segment.
+  int turn(Index p, Index q) {
+    const Point& normal = at(p).normal;
+    const Point& w = at(q).offset;
+    const int sign = signs_.decided(w.x * normal.x + w.y * normal.y + w.z * normal.z);
+    if (sign != 0) return sign;
+    return geometry::orient3d(points_[a_], points_[b_], points_[p], points_[q]);
+  }
+
+ private:
+  struct OfVertex {
+    Point offset;  // from a
+    Point normal;  // of the plane of the segment and the vertex
+    std::uint64_t segment = 0;
+  };
+
+  const OfVertex& at(Index p) {
+    OfVertex& vertex = of_vertex_[p];
+    if (vertex.segment != segment_) {
+      const Point& a = points_[a_];
+      const Point u{points_[b_].x - a.x, points_[b_].y - a.y, points_[b_].z - a.z};
+      const Point v{points_[p].x - a.x, points_[p].y - a.y, points_[p].z - a.z};
+      vertex = {v, {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x}, segment_};
+    }
+    return vertex;
+  }
+
+  const std::vector<Point>& points_;
+  const Signs& signs_;
+  Index a_ = 0;
+  Index b_ = 0;
+  std::vector<OfVertex> of_vertex_;
+  std::uint64_t segment_ = 0;  // the number of segments so far
 };
 
 }  // namespace watertight::delaunay

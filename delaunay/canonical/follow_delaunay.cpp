@@ -11,8 +11,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <map>
+#include <memory_resource>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -37,41 +41,77 @@ using Edge = std::pair<Index, Index>;
 class DelaunayFaces {
  public:
   DelaunayFaces(const CanonicalDelaunay& delaunay, std::size_t vertex_count)
-      : faces_(delaunay.faces), vertex_count_(vertex_count) {}
-
-  /// The index of a face in the sorted list, or kNone.
-  Index find(Triangle triangle) const {
-    std::sort(triangle.begin(), triangle.end());
-    const auto at = std::lower_bound(faces_.begin(), faces_.end(), triangle);
-    if (at == faces_.end() || *at != triangle) return kNone;
-    return static_cast<Index>(at - faces_.begin());
+      : faces_(delaunay.faces), vertex_count_(vertex_count), first_(vertex_count + 1) {
+    for (const Triangle& face : faces_) ++first_[face[0] + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
   }
 
-  /// The faces at an edge, each as (lower end, higher end, third vertex). The table is built on
-  /// first use: solids made of triangles never need it.
-  std::span<const Triangle> around(Index a, Index b) {
+  /// The index of a face in the sorted list, or kNone.
+  Index find(const Triangle& triangle) const {
+    const auto [a, b, c] = sorted(triangle);
+    const auto rest = [](const Triangle& face) { return std::uint64_t{face[1]} << 32U | face[2]; };
+    const std::uint64_t wanted = std::uint64_t{b} << 32U | c;
+    const auto own = faces_.subspan(first_[a], first_[a + 1] - first_[a]);
+    const auto at = std::ranges::lower_bound(own, wanted, {}, rest);
+    if (at == own.end() || rest(*at) != wanted) return kNone;
+    return static_cast<Index>(&*at - faces_.data());
+  }
+
+  /// Calls `visit` with the third vertex of each face at an edge, in any order. The table is built
+  /// on first use: solids made of triangles never need it.
+  template <class Visit>
+  void for_each_around(Index a, Index b, const Visit& visit) {
     if (by_edge_.empty()) build();
-    const Triangle low{std::min(a, b), std::max(a, b), 0};
-    const Triangle high{low[0], low[1], kNone};
-    const auto begin = std::lower_bound(by_edge_.begin(), by_edge_.end(), low);
-    return {begin, std::lower_bound(begin, by_edge_.end(), high)};
+    const auto [low, high] = std::minmax(a, b);
+    const std::span own(by_edge_.data() + first_edge_[low],
+                        first_edge_[low + 1] - first_edge_[low]);
+    auto at = own.begin();
+    if (own.size() > kFewFaces) at = std::ranges::lower_bound(own, Edge{high, 0});
+    for (; at != own.end(); ++at) {
+      if (at->first == high) visit(at->second);
+      if (at->first > high && own.size() > kFewFaces) break;
+    }
   }
 
  private:
+  /// Up to so many entries of a vertex are looked at one by one.
+  static constexpr std::size_t kFewFaces = 64;
+
   void build() {
-    by_edge_.reserve(3 * faces_.size());
+    first_edge_.assign(vertex_count_ + 1, 0);
     for (const auto& [a, b, c] : faces_) {
-      by_edge_.push_back({a, b, c});
-      by_edge_.push_back({a, c, b});
-      by_edge_.push_back({b, c, a});
+      first_edge_[a + 1] += 2;
+      first_edge_[b + 1] += 1;
     }
-    sort_by_vertices(by_edge_, vertex_count_, [](const Triangle& face) { return face; });
+    std::partial_sum(first_edge_.begin(), first_edge_.end(), first_edge_.begin());
+    by_edge_.resize(3 * faces_.size());
+    std::vector<std::size_t> next(first_edge_.begin(), first_edge_.end() - 1);
+    for (const auto& [a, b, c] : faces_) {
+      by_edge_[next[a]++] = {b, c};
+      by_edge_[next[a]++] = {c, b};
+      by_edge_[next[b]++] = {c, a};
+    }
+    for (Index v = 0; v < vertex_count_; ++v) {
+      const std::span own(by_edge_.data() + first_edge_[v], first_edge_[v + 1] - first_edge_[v]);
+      if (own.size() > kFewFaces) std::ranges::sort(own);
+    }
   }
 
   std::span<const Triangle> faces_;
   std::size_t vertex_count_;
-  std::vector<Triangle> by_edge_;
+  std::vector<Index> first_;  // vertex -> the first face that has it as its smallest
+  // The lower end of an edge -> its entries: the higher end and the third vertex of a face. The
+  // entries of a vertex with many are sorted.
+  std::vector<std::size_t> first_edge_;
+  std::vector<Edge> by_edge_;
 };
+
+/// True if the projected triangle turns as the facet does, and has area.
+bool is_positive(const Point& a, const Point& b, const Point& c,
+                 const tessellate::Projection& projection) {
+  const int turn = geometry::orient2d(a, b, c, projection.axis);
+  return projection.is_mirrored ? turn < 0 : turn > 0;
+}
 
 /// One facet with its vertices numbered 0, 1, ... by coordinates.
 struct LocalFacet {
@@ -84,11 +124,9 @@ struct LocalFacet {
   std::size_t triangle_count = 0;
 
   Triangle to_global(const Triangle& t) const { return {global[t[0]], global[t[1]], global[t[2]]}; }
-  /// True if the projected triangle turns as the facet does, and has area.
   bool is_positive(Index a, Index b, Index c) const {
-    const int turn = geometry::orient2d(points[global[a]], points[global[b]], points[global[c]],
-                                        projection.axis);
-    return projection.is_mirrored ? turn < 0 : turn > 0;
+    return delaunay::is_positive(points[global[a]], points[global[b]], points[global[c]],
+                                 projection);
   }
 };
 
@@ -138,6 +176,17 @@ LocalFacet localize(const Solid& solid, Index facet, std::span<const Triangle> c
   return local;
 }
 
+/// Memory for the containers of one facet, which is given back with them. Most facets are small and
+/// need what is here.
+class LocalMemory {
+ public:
+  std::pmr::memory_resource* resource() { return &resource_; }
+
+ private:
+  std::array<std::byte, 8192> first_;
+  std::pmr::monotonic_buffer_resource resource_{first_.data(), first_.size()};
+};
+
 /// Collects the Delaunay faces on the inner side of each edge, from the rings inward. Finds nothing
 /// if an edge has no such face, or has two (possible only in facets that are not exactly planar).
 class Walk {
@@ -162,13 +211,15 @@ class Walk {
 
  private:
   std::optional<Index> third_vertex(Index a, Index b) const {
-    std::optional<Index> found;
-    for (const Triangle& face : faces_.around(facet_.global[a], facet_.global[b])) {
-      const Index third = local_of_[face[2]];
-      if (third == kNone || !facet_.is_positive(a, b, third)) continue;
-      if (found) return std::nullopt;
+    Index found = kNone;
+    bool is_unique = true;
+    faces_.for_each_around(facet_.global[a], facet_.global[b], [&](Index vertex) {
+      const Index third = local_of_[vertex];
+      if (third == kNone || !facet_.is_positive(a, b, third)) return;
+      is_unique = found == kNone;
       found = third;
-    }
+    });
+    if (found == kNone || !is_unique) return std::nullopt;
     return found;
   }
 
@@ -181,7 +232,9 @@ class Walk {
   const LocalFacet& facet_;
   DelaunayFaces& faces_;
   const std::vector<Index>& local_of_;
-  std::set<Edge> open_;  // directed edges whose left side is not covered yet
+  LocalMemory memory_;
+  // Directed edges whose left side is not covered yet.
+  std::pmr::set<Edge> open_{memory_.resource()};
 };
 
 /// Finds, by Klincsek's dynamic programme, the triangulation of one ring with the fewest triangles
@@ -236,7 +289,7 @@ class Flips {
   }
 
   std::vector<Triangle> run() {
-    std::set<Edge> pending;
+    std::pmr::set<Edge> pending(memory_.resource());
     for (const auto& [edge, triangle] : side_) {
       if (edge.first < edge.second && side_.contains({edge.second, edge.first}))
         pending.insert(edge);
@@ -299,7 +352,9 @@ class Flips {
   const LocalFacet& facet_;
   const DelaunayFaces& faces_;
   std::vector<Triangle> triangles_;
-  std::map<Edge, std::size_t> side_;  // directed edge -> the triangle on its left
+  LocalMemory memory_;
+  // Directed edge -> the triangle on its left.
+  std::pmr::map<Edge, std::size_t> side_{memory_.resource()};
   Edge flipped_{};
 };
 
@@ -313,11 +368,45 @@ std::vector<Triangle> follow_locally(const LocalFacet& facet, DelaunayFaces& fac
   return Flips(facet, faces).run();
 }
 
+/// Chooses the diagonal of a facet with four vertices as the functions above would: with the fewest
+/// triangles that are not Delaunay faces; of equals, the one that does not end in the vertex that
+/// comes first by coordinates.
+std::array<Triangle, 2> follow_quad(const Solid& merged, Index facet,
+                                    std::span<const Triangle> canonical,
+                                    const DelaunayFaces& faces) {
+  const std::span<const Point> points = merged.vertices();
+  std::array<Index, 4> v{};
+  std::ranges::copy(merged.ring(merged.rings_of(facet).begin), v.begin());
+  std::ranges::rotate(v, std::ranges::min_element(v, {}, [&](Index i) { return points[i]; }));
+  const std::array<Triangle, 2> first{{{v[0], v[1], v[3]}, {v[1], v[2], v[3]}}};
+  const std::array<Triangle, 2> second{{{v[0], v[2], v[3]}, {v[0], v[1], v[2]}}};
+  const auto faces_in = [&](const std::array<Triangle, 2>& pair) {
+    return std::ranges::count_if(pair, [&](const Triangle& t) { return faces.find(t) != kNone; });
+  };
+  const auto gain = faces_in(second) - faces_in(first);
+  const std::array<Triangle, 2>& wanted = gain > 0 ? second : first;
+  const std::array<Triangle, 2>& other = gain > 0 ? first : second;
+  const Triangle known = sorted(wanted[0]);
+  const bool is_canonical =
+      std::ranges::any_of(canonical, [&](const Triangle& t) { return sorted(t) == known; });
+  if (is_canonical) return wanted;  // the canonical triangles cover the facet
+  const tessellate::Projection projection = tessellate::facet_projection(merged, facet);
+  const bool covers = std::ranges::all_of(wanted, [&](const Triangle& t) {
+    return is_positive(points[t[0]], points[t[1]], points[t[2]], projection);
+  });
+  return covers ? wanted : other;
+}
+
 /// Requires `local_of` to hold kNone everywhere, and leaves it so.
 std::vector<Triangle> follow_facet(const Solid& merged, Index facet,
                                    std::span<const Triangle> canonical, DelaunayFaces& faces,
                                    std::vector<Index>& local_of) {
   if (canonical.size() < 2) return {canonical.begin(), canonical.end()};
+  const IndexRange rings = merged.rings_of(facet);
+  if (canonical.size() == 2 && rings.size() == 1 && merged.ring(rings.begin).size() == 4) {
+    const std::array<Triangle, 2> pair = follow_quad(merged, facet, canonical, faces);
+    return {pair.begin(), pair.end()};
+  }
   const LocalFacet local = localize(merged, facet, canonical, local_of);
   std::vector<Triangle> triangles = follow_locally(local, faces, local_of);
   for (Triangle& t : triangles) t = local.to_global(t);

@@ -11,6 +11,13 @@
 
 namespace watertight::delaunay {
 
+/// A triangle with its vertices in increasing order.
+inline Triangle sorted(const Triangle& t) {
+  const Index low = std::min(t[0], t[1]);
+  const Index high = std::max(t[0], t[1]);
+  return {std::min(low, t[2]), std::max(low, std::min(high, t[2])), std::max(high, t[2])};
+}
+
 /// Sorts records by key_of(record), a Triangle: first by its first vertex, by counting, then the
 /// few records that share this vertex. Requires first vertices below `vertex_count`. Records of
 /// equal keys come in any order.

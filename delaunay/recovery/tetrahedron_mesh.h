@@ -28,12 +28,6 @@ inline Triangle inward_face(const geometry::Tetrahedron& t, std::size_t corner) 
   const auto& [a, b, c] = kFaces[corner];
   return {t[a], t[b], t[c]};
 }
-/// A triangle with its vertices in increasing order.
-inline Triangle sorted(const Triangle& t) {
-  const Index low = std::min(t[0], t[1]);
-  const Index high = std::max(t[0], t[1]);
-  return {std::min(low, t[2]), std::max(low, std::min(high, t[2])), std::max(high, t[2])};
-}
 /// A triangle with its smallest vertex first, its orientation kept.
 inline Triangle rotated(const Triangle& t) {
   if (t[1] < t[0] && t[1] < t[2]) return {t[1], t[2], t[0]};

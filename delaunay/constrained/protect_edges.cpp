@@ -32,6 +32,9 @@ constexpr int kMostPlaceBits = 50;
 /// nearer than this to an end.
 constexpr double kLeastPlace = 1.0 / 1024;
 constexpr double kMostPlace = 0.8;
+/// The same for an edge with two ends of one kind: edges close beside each other would take turns
+/// to cut small parts off.
+constexpr double kLeastPlaceOfEqualEnds = 1.0 / 8;
 /// A Delaunay tetrahedralization of a boundary has about 7 tetrahedra for each vertex.
 constexpr std::uint64_t kTetrahedraPerVertex = 256;
 /// Coordinates are multiplied by 2^30 at most to become whole numbers.
@@ -212,8 +215,11 @@ class Protection {
       return std::sqrt(squared_distance(points_[end], points_[seen_by]) / length);
     };
     if (is_given(first) == is_given(second)) {
-      if (share_from(first) < 0.5) return share_from(first);
-      return share_from(second) < 0.5 ? 1 - share_from(second) : 0.5;
+      const double one = share_from(first);
+      const double other = share_from(second);
+      if (std::min(one, other) < kLeastPlaceOfEqualEnds) return 0.5;
+      if (one < 0.5) return one;
+      return other < 0.5 ? 1 - other : 0.5;
     }
     const double share = share_from(is_given(first) ? first : second);
     if (share > kMostPlace || share < kLeastPlace) return 0.5;

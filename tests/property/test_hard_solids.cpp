@@ -56,3 +56,15 @@ TEST_CASE("edges of two shells that are divided at their common point leave a so
   CHECK(report.verdict == Verdict::undecided);
   CHECK(report.undecided_reason.find("cross in a point that is not a vertex") != std::string::npos);
 }
+
+TEST_CASE("edges close beside each other do not take turns to cut small parts off") {
+  // Once one of two edges got a Steiner point in each of 50 rounds, until the rounds ended.
+  const auto plates =
+      std::ranges::find(hard_families(), std::string_view("plates"), &HardFamily::name);
+  CertifyOptions options;
+  options.tolerances.planarity_metres = 1e30;
+  options.tolerances.planarity_degrees = 360;
+  const Report report = certify(hard_solid(*plates, 6355), nullptr, options).report;
+  INFO(report.undecided_reason);
+  CHECK(report.verdict == Verdict::valid);
+}

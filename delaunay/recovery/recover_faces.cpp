@@ -31,7 +31,7 @@ namespace {
 /// The most tests that the search for the filling of one triangle's cavities makes.
 constexpr std::size_t kFillSteps = 400;
 /// The most tests for all triangles together, for each triangle of the boundary.
-constexpr std::size_t kFillStepsPerTriangle = 16;
+constexpr std::size_t kFillStepsPerTriangle = 32;
 /// The most tetrahedra that flips, and that searches look at for each triangle of the boundary, and
 /// in any case.
 constexpr std::size_t kVisitsPerTriangle = 2048;

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct Totals {
   /// The counts of the solids for which an engine was asked.
   delaunay::CdtStatistics with_engine;
   delaunay::CdtStatistics cdt;
+  std::vector<double> recovered_ms;  // CPU time of rung 1, with its certificate, where it was tried
   std::vector<std::string> undecided;
 };
 
@@ -77,6 +79,11 @@ void decide(const std::string& name, const SubmittedSolid& submitted,
       std::any_of(report.attempts.begin(), report.attempts.end(),
                   [](const delaunay::RungAttempt& attempt) { return attempt.worker_seconds > 0; });
   if (has_engine) totals.with_engine.add(report.attempts);
+  for (const delaunay::RungAttempt& attempt : report.attempts) {
+    if (attempt.rung == delaunay::Rung::recovered) {
+      totals.recovered_ms.push_back(1e3 * attempt.cpu_seconds);
+    }
+  }
   if (settings.prints_attempts) print_attempts(name, report);
   if (report.verdict == Verdict::valid) ++totals.valid;
   if (report.verdict == Verdict::invalid) ++totals.invalid;
@@ -113,6 +120,17 @@ void print_cost(const char* what, const delaunay::CdtStatistics& cdt) {
       step / std::max(cdt.engine_seconds, 1e-9));
 }
 
+void print_distribution(std::vector<double> values) {
+  if (values.empty()) return;
+  std::sort(values.begin(), values.end());
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  const std::size_t n = values.size();
+  std::printf(
+      "CPU of rung recovered, with its certificate: mean %.3f ms, median %.3f, 99 %% below "
+      "%.2f, longest %.2f\n",
+      sum / static_cast<double>(n), values[n / 2], values[n - 1 - n / 100], values[n - 1]);
+}
+
 void print_totals(const Totals& totals) {
   const delaunay::CdtStatistics& cdt = totals.cdt;
   std::printf("\n%zu files, %zu unreadable, %zu solids: %zu valid, %zu invalid, %zu undecided\n",
@@ -134,6 +152,7 @@ void print_totals(const Totals& totals) {
   }
   std::printf("certify: %.2f s wall; CDT step: %.2f s wall\n", totals.seconds, cdt.seconds);
   print_cost("all solids", cdt);
+  print_distribution(totals.recovered_ms);
   print_cost("those that reached an engine", totals.with_engine);
   for (const std::string& text : totals.undecided) std::printf("undecided %s\n", text.c_str());
 }

@@ -34,6 +34,7 @@ struct FileSums {
       {"polygon facets, 75 %", {}},
       {"polygon facets, 100 % on edges", {}},
       {"polygon facets, the CDT as it is", {}},
+      {"the CDT of this process (encode --steiner)", {}},
       {"triangulated facets (the paper's setting)", {}},
   };
   std::uint64_t solids = 0, skipped = 0, vertices = 0, raw_triangles = 0;
@@ -41,28 +42,30 @@ struct FileSums {
   std::uint64_t wkb = 0, wkb_zstd = 0, city_json_zstd = 0, draco = 0, without_draco = 0;
 };
 
-std::optional<delaunay::Certificate> engine_certificate(const Solid& solid,
-                                                        const tessellate::FacetTriangles& facets,
-                                                        delaunay::EngineWorkers& workers,
-                                                        bool is_triangulated) {
+std::optional<delaunay::Certificate> certificate_of(const Solid& solid,
+                                                    const tessellate::FacetTriangles& facets,
+                                                    delaunay::EngineWorkers& workers,
+                                                    delaunay::Rung first, delaunay::Rung last) {
   delaunay::LadderOptions options;
-  options.first_rung = is_triangulated ? delaunay::Rung::tetgen
-                                       // The paper's numbers come from TetGen.
-                                       : delaunay::Rung::patch;
-  options.last_rung = is_triangulated ? delaunay::Rung::tetgen : delaunay::Rung::patch_scaled;
+  options.first_rung = first;
+  options.last_rung = last;
   return delaunay::climb_ladder(solid, facets, &workers, options).certificate;
 }
 
 /// Adds all settings of a solid or none, so that every row counts the same solids.
 bool add_accounting(const Solid& solid, delaunay::EngineWorkers& workers, FileSums& sums) {
   const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
-  const auto polygon = engine_certificate(solid, facets, workers, false);
-  const auto triangulated = engine_certificate(solid, facets, workers, true);
-  if (!polygon || !triangulated) return false;
+  using enum delaunay::Rung;
+  const auto polygon = certificate_of(solid, facets, workers, patch, patch_scaled);
+  const auto own = certificate_of(solid, facets, workers, delaunay::Rung::delaunay, recovered);
+  // The paper's numbers come from TetGen.
+  const auto triangulated = certificate_of(solid, facets, workers, tetgen, tetgen);
+  if (!polygon || !own || !triangulated) return false;
   std::vector<std::optional<Accounting>> rows{account_following(solid)};
   for (const double density : {0.25, 0.5, 0.75, 1.0})
     rows.push_back(account_refined(solid, *polygon, density));
   rows.push_back(account_certificate(*polygon));
+  rows.push_back(account_certificate(*own));
   rows.push_back(account_certificate(*triangulated));
   for (const auto& row : rows) {
     if (!row) return false;

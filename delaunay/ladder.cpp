@@ -17,12 +17,9 @@
 #include <numeric>
 #include <utility>
 
-#include "delaunay/canonical/follow_delaunay.h"
-#include "delaunay/canonical_delaunay.h"
 #include "delaunay/cdt_frames.h"
 #include "delaunay/cdt_statistics.h"
-#include "delaunay/constrained/constrained_delaunay.h"
-#include "delaunay/recovery/recover_faces.h"
+#include "delaunay/own_rungs.h"
 #include "tessellate/flatness.h"
 #include "workers/worker_pool.h"
 
@@ -34,9 +31,6 @@ using Clock = std::chrono::steady_clock;
 /// A solid whose extents on two axes differ by more than this factor goes to the scaled rungs at
 /// once: engines work with distances, and boxes in degrees and metres look flat to them.
 constexpr double kAnisotropy = 1024;
-/// A Delaunay tetrahedralization of a boundary has about 7 tetrahedra for each vertex; far more
-/// means a degenerate set for which rung 0 must not use up the memory.
-constexpr std::uint64_t kTetrahedraPerVertex = 256;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -208,9 +202,8 @@ class Climb {
       attempt_.rung = rung;
       const Clock::time_point start = Clock::now();
       const double cpu_start = thread_seconds();
-      rung == Rung::delaunay    ? try_delaunay()
-      : rung == Rung::recovered ? try_recovered()
-                                : try_engine(rung);
+      const bool is_own = rung == Rung::delaunay || rung == Rung::recovered;
+      is_own ? try_own(rung) : try_engine(rung);
       attempt_.seconds = seconds_since(start);
       attempt_.cpu_seconds = thread_seconds() - cpu_start;
       result_.attempts.push_back(std::move(attempt_));
@@ -319,105 +312,12 @@ class Climb {
     attempt_.outcome = std::move(text);
   }
 
-  void conclude(const Error& error) {
-    const bool is_limit = error.code == ErrorCode::limit_exceeded;
-    if (error.code == ErrorCode::cancelled) {
-      conclude(RungOutcome::cancelled, "cancelled: cancelled by the caller");
-    } else {
-      conclude(is_limit ? RungOutcome::memory_limit : RungOutcome::engine_error,
-               "refused: " + error.message);
-    }
-  }
-
-  /// Makes the canonical Delaunay tetrahedralization and the facets' triangles that follow it, but
-  /// for facets that keep their canonical ones. False, with a conclusion, if that is not possible.
-  bool make_delaunay(const std::vector<bool>& is_kept) {
-    Result<CanonicalDelaunay> delaunay = canonical_delaunay(
-        solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count(), options_.cancel);
-    if (!delaunay) return conclude(delaunay.error()), false;
-    Result<FollowingTriangles> followed =
-        follow_delaunay(solid_, triangles(), *delaunay, is_kept, options_.cancel);
-    if (!followed) return conclude(followed.error()), false;
-    following_ = *std::move(followed);
-    delaunay_tetrahedra_ = std::move(delaunay->tetrahedra);
-    return true;
-  }
-
-  void conclude_missing(std::size_t missing, const char* faces) {
-    conclude(RungOutcome::not_delaunay, "refused: " + std::to_string(missing) + " of " +
-                                            std::to_string(following_->triangles.size()) +
-                                            " boundary triangles are not " + faces);
-  }
-
-  void try_delaunay() {
-    if (!make_delaunay(is_kept_)) return;
-    if (following_->missing_total > 0) {
-      return conclude_missing(following_->missing_total, "Delaunay faces");
-    }
-    const auto points = solid_.vertices();
-    judge_own({points.begin(), points.end()}, std::exchange(delaunay_tetrahedra_, {}),
-              Rung::delaunay);
-  }
-
-  void try_recovered() {
-    // Edges of other shells that lie on a facet are edges of its canonical triangles only.
-    std::vector<bool> is_kept = taken_apart();
-    is_kept.resize(solid_.facet_count());
-    const bool is_anew = !following_ || contacts_.has_contacts();
-    if (is_anew && !make_delaunay(is_kept)) return;
-    while (part_equal_triangles(following_->triangles, following_->facet_of, is_kept)) {
-      if (!make_delaunay(is_kept)) return;
-    }
-    std::vector<Index> missing;
-    for (Index i = 0; i < following_->triangles.size(); ++i) {
-      if (following_->delaunay_face[i] == kNone) missing.push_back(i);
-    }
-    Result<RecoveredFaces> recovered =
-        recover_faces(solid_.vertices(), std::exchange(delaunay_tetrahedra_, {}),
-                      following_->triangles, missing, options_.cancel);
-    if (!recovered) return conclude(recovered.error());
-    if (recovered->missing > 0) return try_constrained();
-    const FollowingTriangles following = *std::exchange(following_, std::nullopt);
-    following_.emplace();
-    for (std::size_t i = 0; i < recovered->triangles.size(); ++i) {
-      following_->triangles.push_back(recovered->triangles[i]);
-      following_->facet_of.push_back(following.facet_of[recovered->source[i]]);
-    }
-    judge_own(std::move(recovered->points), std::move(recovered->tetrahedra), Rung::recovered);
-  }
-
-  /// The second half of rung 1, for what flips do not recover.
-  void try_constrained() {
-    following_.reset();
-    Result<ConstrainedDelaunay> constrained =
-        constrained_delaunay(solid_, triangles(), taken_apart(), options_.cancel);
-    if (!constrained) return conclude(constrained.error());
-    following_.emplace();
-    following_->triangles = std::move(constrained->triangles);
-    following_->facet_of = std::move(constrained->facet_of);
-    if (constrained->missing > 0) {
-      conclude_missing(constrained->missing, "recovered");
-      following_.reset();
-      return;
-    }
-    judge_own(std::move(constrained->points), std::move(constrained->tetrahedra), Rung::recovered);
-  }
-
-  /// Judges tetrahedra of which all following triangles are faces.
-  void judge_own(std::vector<Point> points, std::vector<geometry::Tetrahedron> tetrahedra,
-                 Rung rung) {
-    const FollowingTriangles following = *std::exchange(following_, std::nullopt);
-    Tetrahedralization own;
-    own.points = std::move(points);
-    own.input_count = solid_.vertex_count();
-    own.tetrahedra = std::move(tetrahedra);
-    for (std::size_t t = 0; t < following.triangles.size(); ++t) {
-      Triangle face = following.triangles[t];
-      std::sort(face.begin(), face.end());
-      own.constrained.push_back({face, following.facet_of[t]});
-    }
-    std::sort(own.constrained.begin(), own.constrained.end());
-    judge(std::move(own), rung);
+  void try_own(Rung rung) {
+    if (!own_) own_.emplace(solid_, triangles(), contacts_.has_contacts(), options_.cancel);
+    RungResult result =
+        rung == Rung::delaunay ? own_->delaunay(is_kept_) : own_->recovered(taken_apart());
+    if (!result.made) return conclude(result.outcome, std::move(result.text));
+    judge(*std::move(result.made), rung);
   }
 
   void try_engine(Rung rung) {
@@ -517,9 +417,7 @@ class Climb {
   ContactTriangles contacts_;
   std::vector<bool> is_kept_;  // facet -> its canonical triangles must be kept; empty if none
   std::ptrdiff_t first_of_constraints_ = 0;  // the first attempt with the present constraints
-  // The canonical Delaunay tetrahedralization, from rung 0 to rung 1.
-  std::vector<geometry::Tetrahedron> delaunay_tetrahedra_;
-  std::optional<FollowingTriangles> following_;
+  std::optional<OwnRungs> own_;
   EngineInput input_;
   RungAttempt attempt_;
   double engines_seconds_ = 0;  // CPU time of workers so far

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "delaunay/own_rungs.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "delaunay/canonical/sort_by_vertices.h"
+#include "delaunay/canonical_delaunay.h"
+#include "delaunay/constrained/constrained_delaunay.h"
+#include "delaunay/recovery/recover_faces.h"
+
+namespace watertight::delaunay {
+namespace {
+
+/// A Delaunay tetrahedralization of a boundary has about 7 tetrahedra for each vertex; far more
+/// means a degenerate set for which rung 0 must not use up the memory.
+constexpr std::uint64_t kTetrahedraPerVertex = 256;
+
+RungResult missing_faces(std::size_t missing, std::size_t all, const char* faces) {
+  return {std::nullopt, RungOutcome::not_delaunay,
+          "refused: " + std::to_string(missing) + " of " + std::to_string(all) +
+              " boundary triangles are not " + faces};
+}
+
+/// The reason of an error as the outcome of a rung.
+RungResult failed_rung(const Error& error) {
+  if (error.code == ErrorCode::cancelled) {
+    return {std::nullopt, RungOutcome::cancelled, "cancelled: cancelled by the caller"};
+  }
+  const bool is_limit = error.code == ErrorCode::limit_exceeded;
+  return {std::nullopt, is_limit ? RungOutcome::memory_limit : RungOutcome::engine_error,
+          "refused: " + error.message};
+}
+
+}  // namespace
+
+/// Makes the canonical Delaunay tetrahedralization and the facets' triangles that follow it, but
+/// for facets that keep their canonical ones.
+std::optional<Error> OwnRungs::make_delaunay(const std::vector<bool>& is_kept) {
+  Result<CanonicalDelaunay> delaunay = canonical_delaunay(
+      solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count(), is_cancelled_);
+  if (!delaunay) return delaunay.error();
+  Result<FollowingTriangles> followed =
+      follow_delaunay(solid_, triangles_, *delaunay, is_kept, is_cancelled_);
+  if (!followed) return followed.error();
+  following_ = *std::move(followed);
+  tetrahedra_ = std::move(delaunay->tetrahedra);
+  return std::nullopt;
+}
+
+RungResult OwnRungs::delaunay(const std::vector<bool>& is_kept) {
+  if (const auto error = make_delaunay(is_kept)) return failed_rung(*error);
+  if (following_->missing_total > 0) {
+    return missing_faces(following_->missing_total, following_->triangles.size(), "Delaunay faces");
+  }
+  const FollowingTriangles following = *std::exchange(following_, std::nullopt);
+  const auto points = solid_.vertices();
+  return {with_faces({points.begin(), points.end()}, std::exchange(tetrahedra_, {}),
+                     following.triangles, following.facet_of),
+          {},
+          {}};
+}
+
+RungResult OwnRungs::recovered(const std::vector<bool>& is_taken_apart) {
+  // Edges of other shells that lie on a facet are edges of its canonical triangles only.
+  std::vector<bool> is_kept = is_taken_apart;
+  is_kept.resize(solid_.facet_count());
+  bool is_due = !following_ || is_divided_;
+  while (is_due || part_equal_triangles(following_->triangles, following_->facet_of, is_kept)) {
+    if (const auto error = make_delaunay(is_kept)) return failed_rung(*error);
+    is_due = false;
+  }
+  const FollowingTriangles following = *std::exchange(following_, std::nullopt);
+  std::vector<Index> missing;
+  for (Index i = 0; i < following.triangles.size(); ++i) {
+    if (following.delaunay_face[i] == kNone) missing.push_back(i);
+  }
+  Result<RecoveredFaces> recovered =
+      recover_faces(solid_.vertices(), std::exchange(tetrahedra_, {}), following.triangles, missing,
+                    is_cancelled_);
+  if (!recovered) return failed_rung(recovered.error());
+  if (recovered->missing > 0) return constrained(is_taken_apart);
+  std::vector<Index> facet_of;
+  for (const Index source : recovered->source) facet_of.push_back(following.facet_of[source]);
+  return {with_faces(std::move(recovered->points), std::move(recovered->tetrahedra),
+                     recovered->triangles, facet_of),
+          {},
+          {}};
+}
+
+/// The second half of rung 1, for what flips do not recover.
+RungResult OwnRungs::constrained(const std::vector<bool>& is_taken_apart) {
+  Result<ConstrainedDelaunay> constrained =
+      constrained_delaunay(solid_, triangles_, is_taken_apart, is_cancelled_);
+  if (!constrained) return failed_rung(constrained.error());
+  if (constrained->missing > 0) {
+    return missing_faces(constrained->missing, constrained->triangles.size(), "recovered");
+  }
+  return {with_faces(std::move(constrained->points), std::move(constrained->tetrahedra),
+                     constrained->triangles, constrained->facet_of),
+          {},
+          {}};
+}
+
+/// A tetrahedralization of which the triangles of facets are faces.
+Tetrahedralization OwnRungs::with_faces(std::vector<Point> points,
+                                        std::vector<geometry::Tetrahedron> tetrahedra,
+                                        const std::vector<Triangle>& triangles,
+                                        const std::vector<Index>& facet_of) const {
+  Tetrahedralization own;
+  own.points = std::move(points);
+  own.input_count = solid_.vertex_count();
+  own.tetrahedra = std::move(tetrahedra);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    own.constrained.push_back({sorted(triangles[t]), facet_of[t]});
+  }
+  std::sort(own.constrained.begin(), own.constrained.end());
+  return own;
+}
+
+}  // namespace watertight::delaunay

@@ -377,7 +377,8 @@ std::array<Triangle, 2> follow_quad(const Solid& merged, Index facet,
   const std::span<const Point> points = merged.vertices();
   std::array<Index, 4> v{};
   std::ranges::copy(merged.ring(merged.rings_of(facet).begin), v.begin());
-  std::ranges::rotate(v, std::ranges::min_element(v, {}, [&](Index i) { return points[i]; }));
+  std::rotate(v.begin(), std::ranges::min_element(v, {}, [&](Index i) { return points[i]; }),
+              v.end());
   const std::array<Triangle, 2> first{{{v[0], v[1], v[3]}, {v[1], v[2], v[3]}}};
   const std::array<Triangle, 2> second{{{v[0], v[2], v[3]}, {v[0], v[1], v[2]}}};
   const auto faces_in = [&](const std::array<Triangle, 2>& pair) {

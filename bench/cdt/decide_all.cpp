@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bench/input.h"
+#include "counted_memory.h"
 #include "delaunay/cdt_statistics.h"
 #include "validate/certify.h"
 
@@ -38,6 +39,7 @@ struct Totals {
   /// The counts of the solids for which an engine was asked.
   delaunay::CdtStatistics with_engine;
   delaunay::CdtStatistics cdt;
+  std::vector<double> bytes_a_vertex;  // the most that certify() held, for each solid
   std::vector<double> recovered_ms;  // CPU time of rung 1, with its certificate, where it was tried
   std::vector<std::string> undecided;
 };
@@ -70,7 +72,10 @@ void decide(const std::string& name, const SubmittedSolid& submitted,
   CertifyOptions options;
   options.unclosed_rings = submitted.unclosed_rings;
   if (settings.is_engine_only) options.ladder.first_rung = delaunay::Rung::patch;
+  bench::count_bytes_from_here();
   const Inspection inspection = certify(submitted.solid, &workers, options);
+  totals.bytes_a_vertex.push_back(static_cast<double>(bench::most_bytes_held()) /
+                                  std::max(1U, submitted.solid.vertex_count()));
   const Report& report = inspection.report;
   ++totals.solids;
   totals.seconds += report.seconds;
@@ -120,15 +125,13 @@ void print_cost(const char* what, const delaunay::CdtStatistics& cdt) {
       step / std::max(cdt.engine_seconds, 1e-9));
 }
 
-void print_distribution(std::vector<double> values) {
+void print_distribution(const char* what, std::vector<double> values) {
   if (values.empty()) return;
   std::sort(values.begin(), values.end());
   const double sum = std::accumulate(values.begin(), values.end(), 0.0);
   const std::size_t n = values.size();
-  std::printf(
-      "CPU of rung recovered, with its certificate: mean %.3f ms, median %.3f, 99 %% below "
-      "%.2f, longest %.2f\n",
-      sum / static_cast<double>(n), values[n / 2], values[n - 1 - n / 100], values[n - 1]);
+  std::printf("%s: mean %.3f, median %.3f, 99 %% below %.2f, most %.2f\n", what,
+              sum / static_cast<double>(n), values[n / 2], values[n - 1 - n / 100], values[n - 1]);
 }
 
 void print_totals(const Totals& totals) {
@@ -152,7 +155,8 @@ void print_totals(const Totals& totals) {
   }
   std::printf("certify: %.2f s wall; CDT step: %.2f s wall\n", totals.seconds, cdt.seconds);
   print_cost("all solids", cdt);
-  print_distribution(totals.recovered_ms);
+  print_distribution("ms of CPU of rung recovered, with its certificate", totals.recovered_ms);
+  print_distribution("bytes that certify() holds at most, for each vertex", totals.bytes_a_vertex);
   print_cost("those that reached an engine", totals.with_engine);
   for (const std::string& text : totals.undecided) std::printf("undecided %s\n", text.c_str());
 }

@@ -5,48 +5,15 @@
 // solids pass the exact tests, how many of these are proven by which rung, their Steiner points,
 // processor time and memory, and each solid that is not proven. --peers also asks CGAL and TetGen
 // for each solid whose boundary is not Delaunay. Exit status 1 if a solid is not proven.
-#include <malloc.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <new>
 #include <string>
 
+#include "counted_memory.h"
 #include "delaunay/ladder.h"
 #include "tests/solids/hard_solids.h"
 #include "validate/certify.h"
-
-// The bytes that this program holds, and the most that it held: counted by the usable sizes of
-// all blocks, because the standard library has no count.
-namespace {
-std::atomic<std::size_t> held{0};
-std::atomic<std::size_t> most_held{0};
-
-void* counted(void* block) {
-  if (block == nullptr) std::abort();
-  const std::size_t now = held += malloc_usable_size(block);
-  if (now > most_held) most_held = now;
-  return block;
-}
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(std::malloc(size)); }
-void* operator new(std::size_t size, std::align_val_t align) {
-  const auto step = static_cast<std::size_t>(align);
-  return counted(std::aligned_alloc(step, (size + step - 1) / step * step));
-}
-void operator delete(void* block) noexcept {
-  held -= malloc_usable_size(block);
-  std::free(block);
-}
-void operator delete(void* block, std::size_t) noexcept { operator delete(block); }
-void operator delete(void* block, std::align_val_t) noexcept { operator delete(block); }
-void operator delete(void* block, std::size_t, std::align_val_t) noexcept {
-  operator delete(block);
-}
 
 using namespace watertight;
 
@@ -125,10 +92,9 @@ void add(Sums& sums, const Inspection& inspection) {
 void prove(const Solid& solid, const std::string& name, const Arguments& arguments,
            delaunay::EngineWorkers& workers, FamilySums& sums) {
   using enum delaunay::Rung;
-  const std::size_t before = held;
-  most_held = before;
+  bench::count_bytes_from_here();
   const Inspection own = inspect(solid, nullptr, delaunay, recovered);
-  const double bytes = static_cast<double>(most_held - before);
+  const double bytes = static_cast<double>(bench::most_bytes_held());
   if (own.report.attempts.empty()) return;  // the exact tests refuse it
   ++sums.passed;
   if (own.certified && own.certified->certificate->rung == delaunay) {

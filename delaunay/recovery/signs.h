@@ -53,8 +53,8 @@ class Signs {
 /// How edges turn around one segment. What a sign needs of a vertex is computed once.
 class SegmentTurns {
  public:
-  /// Keeps a reference.
-  explicit SegmentTurns(const std::vector<Point>& points, const Signs& signs)
+  /// Keeps a reference to the points.
+  SegmentTurns(const std::vector<Point>& points, const Signs& signs)
       : points_(points), signs_(signs) {}
 
   /// Begins with another segment.
@@ -93,7 +93,7 @@ class SegmentTurns {
   }
 
   const std::vector<Point>& points_;
-  const Signs& signs_;
+  Signs signs_;
   Index a_ = 0;
   Index b_ = 0;
   std::vector<OfVertex> of_vertex_;

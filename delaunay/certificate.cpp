@@ -16,8 +16,8 @@
 
 #include "delaunay/cancellation.h"
 #include "delaunay/canonical/sort_by_vertices.h"
-#include "delaunay/complex.h"
-#include "delaunay/facet_surface.h"
+#include "delaunay/certificate/complex.h"
+#include "delaunay/certificate/facet_surface.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/measures.h"
 #include "geometry/predicates/predicates.h"

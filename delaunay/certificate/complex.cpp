@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "delaunay/complex.h"
+#include "delaunay/certificate/complex.h"
 
 #include <algorithm>
 #include <array>

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "delaunay/certificate/small_faces.h"
 #include "delaunay/tetrahedralization.h"
 #include "geometry/solid.h"
 #include "tessellate/facets.h"
@@ -64,7 +65,6 @@ class FacetSurfaces {
   struct Plane;
   class Mesh;
 
-  std::optional<FacetSurface> small_surface(Index facet, std::span<const ConstrainedFace> faces);
   Plane plane_of(Index facet) const;
   bool is_steiner(Index vertex) const { return vertex >= data_.input_count; }
   bool has_chain(Index facet, Mesh& mesh, Index from, Index to) const;
@@ -85,10 +85,10 @@ class FacetSurfaces {
   const Tetrahedralization& data_;
   std::array<double, 3> unit_;
   std::array<double, 3> rounding_;
-  std::unique_ptr<Mesh> mesh_;             // of the facet at work; its memory serves all facets
-  std::array<Triangle, 2> small_faces_{};  // of the last small surface
-  std::vector<char> is_used_;              // edge of the boundary -> a ring runs along it
-  std::vector<Index> facet_stamp_;         // vertex -> the last facet whose rings have it
+  std::unique_ptr<Mesh> mesh_;      // of the facet at work; its memory serves all facets
+  SmallFaces small_faces_;          // of the last facet with few
+  std::vector<char> is_used_;       // edge of the boundary -> a ring runs along it
+  std::vector<Index> facet_stamp_;  // vertex -> the last facet whose rings have it
 };
 
 }  // namespace watertight::delaunay

@@ -15,7 +15,7 @@
 //      but for rounding;
 //   5. in projection the faces cover no more area than the canonical triangles: together with step
 //      3 this excludes folds.
-#include "delaunay/facet_surface.h"
+#include "delaunay/certificate/facet_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -535,62 +535,23 @@ bool FacetSurfaces::has_chain(Index facet, Mesh& mesh, Index from, Index to) con
   return false;
 }
 
-/// The surface of a facet of one ring with three or four vertices, if its faces are its canonical
-/// triangles: one triangle, or two that lack opposite vertices of the ring. Such faces have no
-/// other vertices, one edge in common or none, and the ring as their boundary, and they are where
-/// the canonical triangles are: the five steps hold without a search.
-std::optional<FacetSurface> FacetSurfaces::small_surface(Index facet,
-                                                         std::span<const ConstrainedFace> faces) {
-  const IndexRange rings = solid_.rings_of(facet);
-  if (rings.size() != 1) return std::nullopt;
-  const std::span<const Index> ring = solid_.ring(rings.begin);
-  const std::span<const Triangle> canonical = canonical_of(facet);
-  const std::size_t count = ring.size() - 2;
-  if (ring.size() < 3 || count > small_faces_.size() || faces.size() != count ||
-      canonical.size() != count) {
-    return std::nullopt;
-  }
-  // The vertices of a triangle as bits, one for each place in the ring.
-  const auto bits_of = [&](const Triangle& t) {
-    unsigned bits = 0;
-    for (const Index v : t) {
-      const auto place = std::find(ring.begin(), ring.end(), v) - ring.begin();
-      bits |= 1U << static_cast<unsigned>(place);
-    }
-    return bits;
-  };
-  const unsigned whole = (1U << ring.size()) - 1;
-  std::array<unsigned, 2> lacking{};
-  unsigned lacking_canonically = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    lacking[i] = whole ^ bits_of(faces[i].vertices);
-    lacking_canonically |= whole ^ bits_of(canonical[i]);
-  }
-  const bool is_same =
-      count == 1 ? lacking[0] == 0 && lacking_canonically == 0
-                 : std::min(lacking[0], lacking[1]) << 2U == std::max(lacking[0], lacking[1]) &&
-                       (lacking[0] | lacking[1]) == lacking_canonically;
-  if (!is_same) return std::nullopt;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t corner = 0;
-    for (std::size_t place = 0; place < ring.size(); ++place) {
-      if ((lacking[i] >> place & 1U) == 0) small_faces_[i][corner++] = ring[place];
-    }
-  }
-  FacetSurface surface;
-  surface.faces = std::span(small_faces_).first(count);
-  return surface;
-}
-
 std::variant<FacetSurface, FacetFault> FacetSurfaces::check(
     Index facet, std::span<const ConstrainedFace> faces) {
   if (canonical_of(facet).empty()) return FacetFault{"it has no canonical triangulation"};
   if (faces.empty()) return FacetFault{"it has no faces"};
-  if (const auto surface = small_surface(facet, faces)) return *surface;
+  const IndexRange rings = solid_.rings_of(facet);
+  if (rings.size() == 1) {
+    small_faces_ = small_faces(solid_.ring(rings.begin), canonical_of(facet), faces);
+    if (small_faces_.count > 0) {
+      FacetSurface surface;
+      surface.faces = std::span(small_faces_.triangles).first(small_faces_.count);
+      return surface;
+    }
+  }
   Mesh& mesh = *mesh_;
   mesh.take(faces);
   if (const char* wrong = mesh.turn()) return FacetFault{wrong};
-  if (!mesh.is_disc(solid_.rings_of(facet).size())) {
+  if (!mesh.is_disc(rings.size())) {
     return FacetFault{"its faces do not form a disc"};
   }
   const Plane plane = plane_of(facet);

@@ -137,13 +137,13 @@ Response refuse(unsigned status, std::string kind, std::string detail) {
   return to_response(Problem{status, std::move(kind), std::move(detail), {}, {}, {}, {}});
 }
 
-Lane lane_of(const Request& request) {
+Lane lane_of(const Request& request, std::uint64_t body_bytes) {
   const auto target = parse_target(request.target);
   if (!target) return Lane::quick;
   for (const Route& route : routes()) {
     if (route.method != effective_method(request) || !matches(route, *target)) continue;
     // A Watertight file is compressed: its size says little about the work in it.
-    const bool is_small = request.method == "POST" && request.body.size() <= kSmallBody &&
+    const bool is_small = request.method == "POST" && body_bytes <= kSmallBody &&
                           !pipeline::is_container(as_bytes(request.body));
     return route.lane == Lane::computing && is_small ? Lane::small : route.lane;
   }
@@ -173,7 +173,7 @@ Application make_application(const Service& service) {
 }
 
 Application probe_application(const Service& service) {
-  return Application{[](const Request&) { return Lane::quick; },
+  return Application{[](const Request&, std::uint64_t) { return Lane::quick; },
                      [service](const Request& request, const CancelPoll& is_cancelled) {
                        if (request.target == "/healthz" || request.target == "/readyz") {
                          return respond(service, request, is_cancelled);

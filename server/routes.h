@@ -48,8 +48,8 @@ struct Service {
 /// Answers a request. Never fails: every error is an application/problem+json answer.
 Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled);
 
-/// The threads that should answer a request.
-Lane lane_of(const Request& request);
+/// The threads that should answer a request whose body has so many bytes.
+Lane lane_of(const Request& request, std::uint64_t body_bytes);
 
 /// lane_of() and respond() in the form in which the server calls them.
 Application make_application(const Service& service);

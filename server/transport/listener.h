@@ -18,7 +18,9 @@ namespace watertight::server {
 
 /// The functions that answer requests. Several threads call both at once.
 struct Application {
-  std::function<Lane(const Request&)> lane;
+  /// Chooses the threads for a request whose body has so many bytes. A body above 64 KiB is not yet
+  /// in the request, and a quick request never gets it.
+  std::function<Lane(const Request&, std::uint64_t body_bytes)> lane;
   std::function<Response(const Request&, const CancelPoll&)> respond;
   /// Called when a stop has waited long enough: what respond() is doing should fail soon.
   std::function<void()> interrupt = nullptr;

@@ -16,11 +16,13 @@
 #include <cmath>
 #include <new>
 #include <optional>
+#include <span>
 
 #include "base/ascii.h"
 #include "server/transport/body_coding.h"
 #include "server/transport/client_watch.h"
 #include "server/transport/messages.h"
+#include "server/transport/received_body.h"
 
 namespace watertight::server {
 namespace {
@@ -106,24 +108,6 @@ class TimeLimit {
   std::shared_ptr<State> state_;
 };
 
-/// One of the things that are counted by address, while it is there.
-class AddressShare {
- public:
-  AddressShare(AddressCounts& counts, std::string address, std::size_t most)
-      : counts_(counts), address_(std::move(address)), is_granted_(counts_.take(address_, most)) {}
-  ~AddressShare() {
-    if (is_granted_) counts_.give_back(address_);
-  }
-  AddressShare(const AddressShare&) = delete;
-  AddressShare& operator=(const AddressShare&) = delete;
-  bool is_granted() const { return is_granted_; }
-
- private:
-  AddressCounts& counts_;
-  std::string address_;
-  bool is_granted_;
-};
-
 /// The right to do the works of a key, which nobody else has meanwhile.
 class KeyShare {
  public:
@@ -188,7 +172,7 @@ class Session {
   std::string method_;
   std::string target_;
   std::string note_;                       // of the answer, for the log
-  std::string body_;                       // of the request
+  ReceivedBody body_;                      // of the request, until the request has it
   std::optional<BudgetShare> body_share_;  // held from the header to the answer
   bool is_head_ = false;
   unsigned version_ = 11;
@@ -261,7 +245,6 @@ awaitable<std::optional<Response>> Session::receive(RequestParser& parser) {
 /// from the budget for bodies and buy time. Returns as receive() does.
 awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) {
   const Clock::time_point start = Clock::now();
-  std::array<char, kReadBytes> piece{};
   body_.clear();
   body_share_.emplace(environment_.bodies, 0);
   stream_.expires_never();
@@ -269,15 +252,16 @@ awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) 
     const double allowed =
         options_.body_seconds + static_cast<double>(body_.size()) / options_.body_rate;
     const TimeLimit limit(connection_, start + seconds(allowed));
-    parser.get().body().data = piece.data();
-    parser.get().body().size = piece.size();
+    const std::span<char> space = body_.space();
+    parser.get().body().data = space.data();
+    parser.get().body().size = space.size();
     parser.get().body().more = true;
     error_code error;
     co_await http::async_read_some(stream_, buffer_, parser, redirect_error(use_awaitable, error));
     if (error == http::error::need_buffer) error = {};
     if (limit.is_over()) co_return problem(408, "request-timeout", "the body came too slowly");
     if (error) co_return answer_to(error, options_).value_or(Response{0, "", "", {}});
-    body_.append(piece.data(), piece.size() - parser.get().body().size);
+    body_.add(space.size() - parser.get().body().size);
     connection_->body_bytes = body_.size();
     const bool is_small = body_.size() <= kUnbudgeted;
     if (!is_small && !body_share_->grow_to(body_.size())) {
@@ -329,35 +313,46 @@ awaitable<Response> Session::finish(const std::shared_ptr<const FurtherWork>& fi
   }
 }
 
-/// Makes the answer, or its first step. A compressed body that expands to little is expanded among
-/// the small works, and the request goes to the lane of its expanded size. Any other is expanded
-/// and used in one computing work, so that no more of them are in memory than there are threads for
-/// computing.
+/// Makes the answer, or its first step. A large body is put together where it is used. A compressed
+/// body that expands to little is expanded among the small works, and the request goes to the lane
+/// of its expanded size. Any other is expanded and used in one computing work, so that no more of
+/// them are in memory than there are threads for computing.
 awaitable<Response> Session::respond(Request& request, const CancelPoll& cancel) {
   constexpr unsigned kIsExpanded = 0;  // no status of an answer
   const Application& application = environment_.application;
   const auto coding = coding_of(request).value_or(archives::Compression::none);
-  const std::function<Response()> make = [&] { return application.respond(request, cancel); };
-  const bool is_packed = coding != archives::Compression::none && !request.body.empty();
-  if (!is_packed || application.lane(request) == Lane::quick) {
-    Response response = co_await run(application.lane(request), make, cancel);
+  const std::uint64_t size = request.body.size() + body_.size();
+  const Lane lane = application.lane(request, size);
+  if (lane == Lane::quick) body_.clear();
+  const auto gather = [&] {
+    if (body_.size() > 0) request.body = body_.take();
+  };
+  const std::function<Response()> make = [&] {
+    gather();
+    return application.respond(request, cancel);
+  };
+  const bool is_packed = coding != archives::Compression::none && size > 0;
+  if (!is_packed || lane == Lane::quick) {
+    Response response = co_await run(lane, make, cancel);
     co_return response;
   }
-  const auto has_room = [&, packed = request.body.size()](std::uint64_t bytes) {
-    return bytes <= kUnbudgeted || body_share_->grow_to(packed + bytes);
+  const auto has_room = [&](std::uint64_t bytes) {
+    return bytes <= kUnbudgeted || body_share_->grow_to(size + bytes);
   };
   const std::function<Response()> expand_little = [&] {
     auto problem = expand_body(request, coding, kUnbudgeted, has_room, cancel);
     return problem ? *std::move(problem) : Response{kIsExpanded, "", "", {}};
   };
   const std::function<Response()> expand_and_make = [&] {
+    gather();
     auto problem = expand_body(request, coding, options_.body_bytes, has_room, cancel);
     return problem ? *std::move(problem) : made_guarded(make);
   };
-  if (request.body.size() <= kUnbudgeted) {
+  if (size <= kUnbudgeted) {
     Response little = co_await run(Lane::small, expand_little, cancel);
     if (little.status == kIsExpanded) {
-      Response response = co_await run(application.lane(request), make, cancel);
+      const Lane expanded_lane = application.lane(request, request.body.size());
+      Response response = co_await run(expanded_lane, make, cancel);
       co_return response;
     }
     if (little.status != 413) co_return little;
@@ -407,8 +402,8 @@ awaitable<bool> Session::serve_one() {
   Response response;
   {
     Request request = to_request(parser);
-    request.body = std::exchange(body_, {});
-    if (!takes_body(parser)) request.body = {};
+    if (!takes_body(parser)) body_.clear();
+    if (body_.size() <= kUnbudgeted) request.body = body_.take();
     response = co_await answer(request);
   }
   body_share_.reset();

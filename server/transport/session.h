@@ -51,6 +51,24 @@ class AddressCounts {
   std::unordered_map<std::string, std::size_t> counts_;
 };
 
+/// One of the things that are counted by address, while it is there.
+class AddressShare {
+ public:
+  AddressShare(AddressCounts& counts, std::string address, std::size_t most)
+      : counts_(counts), address_(std::move(address)), is_granted_(counts_.take(address_, most)) {}
+  ~AddressShare() {
+    if (is_granted_) counts_.give_back(address_);
+  }
+  AddressShare(const AddressShare&) = delete;
+  AddressShare& operator=(const AddressShare&) = delete;
+  bool is_granted() const { return is_granted_; }
+
+ private:
+  AddressCounts& counts_;
+  std::string address_;
+  bool is_granted_;
+};
+
 /// The stream of a connection, shared with the listener so that stopping can close idle
 /// connections.
 struct Connection {

@@ -47,7 +47,7 @@ bool serve_leaving_clients() {
   server::ServerOptions options;
   options.port = 0;
   server::Application application;
-  application.lane = [](const Request&) { return Lane::quick; };
+  application.lane = [](const Request&, std::uint64_t) { return Lane::quick; };
   application.respond = [](const Request&, const CancelPoll&) { return Response{}; };
   auto server = HttpServer::start(options, application, [](const std::string&) {});
   if (!server) return fail(to_string(server.error()));

@@ -97,9 +97,9 @@ class Server {
     options.body_bytes = 1'000'000;
     options.body_bytes_together = together;
     server::Application application;
-    application.lane = [](const server::Request& request) {
+    application.lane = [](const server::Request& request, std::uint64_t bytes) {
       if (request.target == "/quick") return server::Lane::quick;
-      return request.body.size() <= kLittle ? server::Lane::small : server::Lane::computing;
+      return bytes <= kLittle ? server::Lane::small : server::Lane::computing;
     };
     application.respond = [this](const server::Request& request, const CancelPoll&) {
       ++answers;

@@ -29,7 +29,7 @@ struct LaneServer {
     options.small_threads = 2;
     options.drain_seconds = 5;
     server::Application application;
-    application.lane = [](const server::Request& request) {
+    application.lane = [](const server::Request& request, std::uint64_t) {
       if (request.target == "/computing") return server::Lane::computing;
       if (request.target == "/small") return server::Lane::small;
       if (request.target == "/quick") return server::Lane::quick;

@@ -22,7 +22,7 @@ class Server {
   explicit Server(server::ServerOptions options = small()) {
     options.port = 0;
     server::Application application;
-    application.lane = [](const server::Request& request) {
+    application.lane = [](const server::Request& request, std::uint64_t) {
       return request.target == "/slow" ? server::Lane::computing : server::Lane::quick;
     };
     application.respond = [this](const server::Request& request, const CancelPoll& is_cancelled) {
@@ -386,7 +386,9 @@ struct Parts {
     options.write_seconds = 0.5;
     options.write_rate = 100e3;
     server::Application application;
-    application.lane = [](const server::Request&) { return server::Lane::computing; };
+    application.lane = [](const server::Request&, std::uint64_t) {
+      return server::Lane::computing;
+    };
     application.respond = [=, this](const server::Request& request, const CancelPoll&) {
       server::Response response{200, "text/plain", std::string(bytes, 'a'), {}};
       if (request.target != "/parts") return response;
@@ -513,7 +515,7 @@ TEST_CASE("the work on a part ends when the client leaves") {
   std::atomic<bool> has_begun = false;
   std::atomic<bool> has_ended = false;
   server::Application application;
-  application.lane = [](const server::Request&) { return server::Lane::reading; };
+  application.lane = [](const server::Request&, std::uint64_t) { return server::Lane::reading; };
   application.respond = [&](const server::Request&, const CancelPoll&) {
     server::Response response{200, "text/plain", "start", {}};
     response.rest = [&](const CancelPoll& is_cancelled) -> Result<std::string> {

@@ -32,8 +32,8 @@ using boost::system::error_code;
 using std::chrono::milliseconds;
 
 constexpr std::size_t kRefusedAtOnce = 64;  // connections beyond the limit that get an answer
-// Between two turns of the I/O thread's queue so many connections are accepted. With one each turn, a
-// probe waits behind all clients that connect again and again, although its own answer is quick.
+// Between two turns of the I/O thread's queue so many connections are accepted. With one each turn,
+// a probe waits behind all clients that connect again and again, although its own answer is quick.
 constexpr int kAcceptedTogether = 32;
 constexpr milliseconds kPause{20};
 constexpr double kMoment = 0.001;  // seconds, added to ages so that all rates are finite

@@ -42,8 +42,7 @@ bool fail(const std::string& message) {
 
 bool serve_leaving_clients() {
   // This call makes the linker take the database's connections into the program.
-  if (store::connection_option("host", "h") != "host='h'")
-    return fail("no libpq options");
+  if (store::connection_option("host", "h") != "host='h'") return fail("no libpq options");
   server::ServerOptions options;
   options.port = 0;
   server::Application application;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
+#include <map>
 #include <utility>
 
 #include "geometry/canonical_form.h"
@@ -38,6 +39,21 @@ bool is_in_range(const codec::IntegerSolid& solid) {
 
 }  // namespace
 
+codec::ModelBank& new_models(const codec::ModelLayout& layout) {
+  struct Banks {
+    codec::ModelBank untouched;
+    codec::ModelBank used;
+  };
+  static std::map<const codec::ModelLayout*, Banks> banks_of;
+  auto banks = banks_of.find(&layout);
+  if (banks == banks_of.end()) {
+    const codec::ModelBank untouched(layout);
+    banks = banks_of.emplace(&layout, Banks{untouched, untouched}).first;
+  }
+  banks->second.used = banks->second.untouched;
+  return banks->second.used;
+}
+
 std::optional<codec::IntegerSolid> integers_of(const OrientedBoundary& boundary) {
   auto gridded = codec::grid_solid(geometry::canonical_form(boundary).boundary.solid());
   if (!gridded) return std::nullopt;
@@ -47,7 +63,7 @@ std::optional<codec::IntegerSolid> integers_of(const OrientedBoundary& boundary)
 Result<Bytes> write(const IntegerMode& mode, const codec::IntegerSolid& solid,
                     const codec::PageMemory& memory) {
   codec::EntropyStream stream = codec::EntropyStream::writer();
-  codec::ModelBank models(mode.model_layout());
+  codec::ModelBank& models = new_models(mode.model_layout());
   codec::IntegerSolid written = solid;
   codec::WriterChoice choice;
   const Status status = mode.code_solid(stream, models, memory, written, choice, {});
@@ -58,7 +74,7 @@ Result<Bytes> write(const IntegerMode& mode, const codec::IntegerSolid& solid,
 Result<codec::IntegerSolid> read(const IntegerMode& mode, ByteView bytes,
                                  const codec::PageMemory& memory, const Limits& limits) {
   codec::EntropyStream stream = codec::EntropyStream::reader(bytes);
-  codec::ModelBank models(mode.model_layout());
+  codec::ModelBank& models = new_models(mode.model_layout());
   codec::IntegerSolid solid;
   codec::WriterChoice unused;
   const Status status = mode.code_solid(stream, models, memory, solid, unused, limits);

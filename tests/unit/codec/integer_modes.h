@@ -22,6 +22,11 @@ inline constexpr IntegerMode kPolygon{codec::polygon::model_layout, codec::polyg
 inline constexpr IntegerMode kParallelogram{codec::parallelogram::model_layout,
                                             codec::parallelogram::code_solid};
 
+/// The models of a layout before their first decision. The layout must last as long as the program.
+/// The next call for it sets the same bank back: that takes far less time than a new bank, above
+/// all under sanitizers.
+codec::ModelBank& new_models(const codec::ModelLayout& layout);
+
 /// The canonical form of a boundary on its grid; nothing if the boundary has no grid.
 std::optional<codec::IntegerSolid> integers_of(const OrientedBoundary& boundary);
 

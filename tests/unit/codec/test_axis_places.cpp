@@ -14,6 +14,7 @@
 #include "codec/page/writer_choice.h"
 #include "geometry/canonical_form.h"
 #include "tests/generated/generated_solids.h"
+#include "tests/unit/codec/integer_modes.h"
 
 namespace watertight {
 namespace {
@@ -21,14 +22,14 @@ namespace {
 using Kind = codec::parallelogram::AxisPlaces::Kind;
 
 Bytes write(const codec::parallelogram::AxisPlaces& places) {
-  codec::ModelBank models(codec::parallelogram::model_layout());
+  codec::ModelBank& models = test::new_models(codec::parallelogram::model_layout());
   codec::EntropyStream stream = codec::EntropyStream::writer();
   REQUIRE(codec::parallelogram::AxisPlaces::code(stream, models, Kind::every, places, {}));
   return std::move(stream).finish();
 }
 
 Result<codec::parallelogram::AxisPlaces> read(ByteView bytes, const Limits& limits = {}) {
-  codec::ModelBank models(codec::parallelogram::model_layout());
+  codec::ModelBank& models = test::new_models(codec::parallelogram::model_layout());
   codec::EntropyStream stream = codec::EntropyStream::reader(bytes);
   return codec::parallelogram::AxisPlaces::code(stream, models, Kind::every, {}, limits);
 }
@@ -88,7 +89,7 @@ codec::IntegerSolid changed(codec::IntegerSolid solid, const Change& change) {
 
 /// Writes a solid and reads it back. Returns the bytes.
 Bytes round_trip(const codec::IntegerSolid& solid) {
-  codec::ModelBank models(codec::parallelogram::model_layout());
+  codec::ModelBank& models = test::new_models(codec::parallelogram::model_layout());
   codec::EntropyStream writer = codec::EntropyStream::writer();
   codec::IntegerSolid source = solid;
   codec::WriterChoice choice;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "delaunay/cancellation.h"
+#include "delaunay/recovery/point_between.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/predicates/predicates.h"
 #include "tessellate/flatness.h"
@@ -39,11 +40,6 @@ constexpr double kLeastPlaceOfEqualEnds = 1.0 / 8;
 constexpr std::uint64_t kTetrahedraPerVertex = 256;
 /// Coordinates are multiplied by 2^30 at most to become whole numbers.
 constexpr double kMostScale = 0x1p30;
-
-double squared_distance(const Point& p, const Point& q) {
-  const Point d{p.x - q.x, p.y - q.y, p.z - q.z};
-  return d.x * d.x + d.y * d.y + d.z * d.z;
-}
 
 /// The canonical Delaunay tetrahedralization does not change with a power of two; whole numbers
 /// take less time.

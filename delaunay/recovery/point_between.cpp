@@ -37,4 +37,9 @@ std::optional<Point> point_between(const Point& p, const Point& q,
   return exact_point(p, q, 0.5);
 }
 
+double squared_distance(const Point& p, const Point& q) {
+  const Point d{p.x - q.x, p.y - q.y, p.z - q.z};
+  return d.x * d.x + d.y * d.y + d.z * d.z;
+}
+
 }  // namespace watertight::delaunay

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points that lie on an edge exactly. Private to delaunay/.
+// Points that lie on an edge exactly, and lengths. Private to delaunay/.
 #pragma once
 
 #include <array>
@@ -15,5 +15,8 @@ namespace watertight::delaunay {
 /// the middle of the segment; none if doubles do not hold this one either.
 std::optional<Point> point_between(const Point& p, const Point& q,
                                    const std::array<double, 2>& places);
+
+/// Rounded.
+double squared_distance(const Point& p, const Point& q);
 
 }  // namespace watertight::delaunay

@@ -180,15 +180,6 @@ class Recovery {
     std::erase_if(missing_, [this](Index i) { return is_face(triangles_[i].vertices); });
   }
 
-  double squared_length(Index a, Index b) const {
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double d = points_[b][axis] - points_[a][axis];
-      sum += d * d;
-    }
-    return sum;
-  }
-
   /// The edge of a missing triangle to divide: the longest of those that are missing too, or if
   /// there are none, the longest.
   VertexPair edge_to_divide(const Triangle& triangle) {
@@ -196,7 +187,7 @@ class Recovery {
     std::pair<bool, double> most{false, -1};
     for (const VertexPair& edge : edges_of(triangle)) {
       const std::pair<bool, double> rank{!is_edge(edge[0], edge[1]),
-                                         squared_length(edge[0], edge[1])};
+                                         squared_distance(points_[edge[0]], points_[edge[1]])};
       if (rank <= most) continue;
       most = rank;
       longest = edge;
@@ -268,12 +259,9 @@ class Recovery {
     if (around.empty()) {
       around = cavity(triangles_[missing].vertices);
       std::erase_if(around, [&](Index t) { return !holds(t, *point); });
-      // Edges of two shells may cross in a point that is no vertex: both would be divided there.
-      const auto has_point = [&](Index t) {
-        return std::ranges::any_of(mesh_.tetrahedron(t),
-                                   [&](Index v) { return points_[v] == *point; });
-      };
-      if (std::ranges::any_of(around, has_point)) return std::nullopt;
+      // Edges of two shells may cross in a point that is no vertex.
+      const auto is_taken = [&](Index t) { return has_wanted_part_at(t, *point); };
+      if (std::ranges::any_of(around, is_taken)) return std::nullopt;
     }
     const auto vertex = static_cast<Index>(points_.size());
     std::vector<geometry::Tetrahedron> parts;
@@ -299,6 +287,19 @@ class Recovery {
       if (geometry::orient3d(points_[a], points_[b], points_[c], p) < 0) return false;
     }
     return true;
+  }
+
+  /// True if a point of a tetrahedron is a corner of it or lies inside a wanted edge or face of it.
+  bool has_wanted_part_at(Index t, const Point& p) const {
+    RingList part;  // the corners of the edge, face or tetrahedron that has the point inside
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const auto [a, b, c] = inward_face(mesh_.tetrahedron(t), corner);
+      const bool is_beside = geometry::orient3d(points_[a], points_[b], points_[c], p) != 0;
+      if (is_beside) part.push_back(mesh_.tetrahedron(t)[corner]);
+    }
+    if (part.size() == 2) return wanted_.has(pair_of(part[0], part[1]));
+    if (part.size() == 3) return wanted_.has(sorted(Triangle{part[0], part[1], part[2]}));
+    return part.size() == 1;
   }
 
   void mark(Index t) {

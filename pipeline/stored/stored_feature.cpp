@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "formats/city_json/city_json.h"
+#include "formats/geo_json/other_vertices.h"
 #include "packing/text_dictionary.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
@@ -25,16 +26,19 @@
 namespace watertight::pipeline {
 namespace {
 
-void include(std::optional<store::StoredBox>& box, const Solid& solid) {
-  const Box lattice_box = solid.box();
-  if (lattice_box.is_empty()) return;
-  const std::array<double, 3> low = solid.lattice().world(lattice_box.min);
-  const std::array<double, 3> high = solid.lattice().world(lattice_box.max);
+void include(std::optional<store::StoredBox>& box, const std::array<double, 3>& low,
+             const std::array<double, 3>& high) {
   if (!box) box = store::StoredBox{low, high};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box->min[axis] = std::min(box->min[axis], low[axis]);
     box->max[axis] = std::max(box->max[axis], high[axis]);
   }
+}
+
+void include(std::optional<store::StoredBox>& box, const Solid& solid) {
+  const Box lattice_box = solid.box();
+  if (lattice_box.is_empty()) return;
+  include(box, solid.lattice().world(lattice_box.min), solid.lattice().world(lattice_box.max));
 }
 
 bool is_proven(const InspectedSolid& solid) {
@@ -284,8 +288,35 @@ Result<StoredFeature> pack(EncodedFeature feature, const packing::DictionaryPoin
   return pack(text, std::move(feature), dictionary);
 }
 
+namespace {
+
+/// The transform in a header. Features of one document follow one another, so that the last one is
+/// kept.
+const std::optional<geometry::Transform>& transform_of(const SharedText& header) {
+  thread_local SharedText known;
+  thread_local std::optional<geometry::Transform> transform;
+  if (header != known) {
+    known = header;
+    transform.reset();
+    const auto read = formats::read_city_json_header(header);
+    if (read) transform = read->transform;
+  }
+  return transform;
+}
+
+/// Extends the box by what the feature has besides solids, so that searches find all of it.
+void include_others(EncodedFeature& feature) {
+  const std::string_view model = model_text(feature);
+  if (model.empty()) return;
+  const auto others = formats::ranges_of_other_vertices(model, transform_of(feature.header));
+  if (others) include(feature.box, others->min, others->max);
+}
+
+}  // namespace
+
 Result<StoredFeature> pack(const std::string& text, EncodedFeature feature,
                            const packing::DictionaryPointer& dictionary) {
+  include_others(feature);
   auto packed = packing::pack(text, dictionary.get());
   if (!packed) return std::move(packed).error();
   if (Status put = put_in_page(feature); !put) return std::move(put).error();

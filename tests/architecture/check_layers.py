@@ -35,7 +35,7 @@ import sys
 import tempfile
 
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
-           "columns", "archives", "formats", "packing", "store", "pipeline", "report", "server", "cli", "sql"]
+           "columns", "archives", "projection", "formats", "packing", "store", "pipeline", "report", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
 MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/
@@ -60,6 +60,7 @@ HOMES = [
     (r"minizip/", "minizip", [r"archives/"]),
     (r"expat\.h", "expat", [r"formats/"]),
     (r"curl/", "libcurl", [r"cli/remote/"]),
+    (r"proj\.h", "PROJ", [r"projection/"]),
     (r"draco/", "Draco", [r"bench/"]),
     (r"(postgres|fmgr|funcapi|miscadmin|varatt)\.h|(utils|catalog|executor|access|lib|mb|port|storage|parser|"
      r"nodes|commands|common|tcop)/[a-z_]+\.h", "the PostgreSQL server", [r"sql/[^/]+\.c$"]),

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/geo_json/city_shapes.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "formats/city_json/city_json.h"
+#include "formats/text/json.h"
+#include "formats/text/numbers.h"
+
+namespace watertight::formats {
+namespace {
+
+using Position = std::array<double, 3>;
+
+constexpr double kNoLevel = -1;  // the rank of a geometry that states no level of detail
+
+std::optional<double> number_of(const Json& value) {
+  if (value.is_number()) return value.get<double>();
+  if (!is_number_value(value)) return std::nullopt;
+  const std::string text = json_text(value);
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+double double_of(const GridNumber& number) {
+  const std::string text = plain_text(number);
+  double value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+/// Three numbers; nothing for another value.
+std::optional<Position> position_of(const Json& value) {
+  if (!value.is_array() || value.size() != 3) return std::nullopt;
+  Position position;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto number = number_of(value[axis]);
+    if (!number) return std::nullopt;
+    position[axis] = *number;
+  }
+  return position;
+}
+
+/// The positions of an array of vertices; one that is no vertex is not finite.
+std::vector<Position> positions_of(const Json* vertices) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Position> positions;
+  if (vertices == nullptr || !vertices->is_array()) return positions;
+  positions.reserve(vertices->size());
+  for (const Json& vertex : *vertices) {
+    positions.push_back(position_of(vertex).value_or(Position{kNone, kNone, kNone}));
+  }
+  return positions;
+}
+
+/// The level of detail of a geometry as its document writes it; "" without one.
+std::string level_of(const Json& geometry) {
+  const Json* lod = find_member(geometry, "lod");
+  if (lod == nullptr) return {};
+  return lod->is_string() ? lod->get<std::string>() : json_text(*lod);
+}
+
+/// The rank of a level of detail: higher ones are larger numbers.
+double rank_of(std::string_view level) {
+  double rank = kNoLevel;
+  std::from_chars(level.data(), level.data() + level.size(), rank);
+  return rank;
+}
+
+/// The arrays of arrays around the surfaces of a geometry type; nothing for other types.
+std::optional<int> levels_around_surfaces(std::string_view type) {
+  if (type == "MultiSurface" || type == "CompositeSurface") return 1;
+  if (type == "Solid") return 2;
+  if (type == "MultiSolid" || type == "CompositeSolid") return 3;
+  return std::nullopt;
+}
+
+/// Adds geometries that refer to one list of positions.
+class ShapeBuilder {
+ public:
+  /// All must outlive this object.
+  ShapeBuilder(const std::vector<Position>& vertices, CityShapes& shapes)
+      : vertices_(vertices), shapes_(shapes) {}
+
+  void add(const std::string& type, const Json& boundaries) {
+    if (const auto levels = levels_around_surfaces(type)) return add_surfaces(boundaries, *levels);
+    if (!boundaries.is_array()) return;
+    if (type == "MultiLineString") {
+      for (const Json& line : boundaries) {
+        auto positions = ring_of(line, 2);
+        if (!positions.empty()) shapes_.lines.push_back(std::move(positions));
+      }
+    }
+    if (type == "MultiPoint") {
+      for (const std::size_t position : ring_of(boundaries, 1)) shapes_.points.push_back(position);
+    }
+  }
+
+ private:
+  void add_surfaces(const Json& boundaries, int levels) {
+    if (!boundaries.is_array()) return;
+    for (const Json& part : boundaries) {
+      if (levels > 1) {
+        add_surfaces(part, levels - 1);
+      } else {
+        add_surface(part);
+      }
+    }
+  }
+
+  void add_surface(const Json& rings) {
+    if (!rings.is_array()) return;
+    CityShapes::Polygon polygon;
+    for (const Json& ring : rings) {
+      auto positions = ring_of(ring, 3);
+      if (!positions.empty()) {
+        polygon.push_back(std::move(positions));
+      } else if (polygon.empty()) {
+        return;  // without the exterior ring the holes would be polygons
+      }
+    }
+    if (!polygon.empty()) shapes_.polygons.push_back(std::move(polygon));
+  }
+
+  /// The positions of a list of vertices; none if there are fewer than `least`, or one of them does
+  /// not exist.
+  CityShapes::Ring ring_of(const Json& list, std::size_t least) {
+    const auto exists = [&](const Json& vertex) {
+      return vertex.is_number_unsigned() && vertex.get<std::uint64_t>() < vertices_.size() &&
+             !std::isnan(vertices_[vertex.get<std::uint64_t>()][0]);
+    };
+    CityShapes::Ring ring;
+    if (!list.is_array() || list.size() < least || !std::all_of(list.begin(), list.end(), exists)) {
+      return ring;
+    }
+    for (const Json& vertex : list) {
+      const auto index = vertex.get<std::uint64_t>();
+      const auto [place, is_new] = used_.try_emplace(index, shapes_.positions.size());
+      if (is_new) shapes_.positions.push_back(vertices_[index]);
+      ring.push_back(place->second);
+    }
+    return ring;
+  }
+
+  const std::vector<Position>& vertices_;
+  CityShapes& shapes_;
+  std::unordered_map<std::uint64_t, std::size_t> used_;
+};
+
+/// The name and value of each attribute of an object.
+void append_attributes(const Json& object, std::vector<std::pair<std::string, std::string>>& out) {
+  const Json* attributes = find_member(object, "attributes");
+  if (attributes == nullptr || !attributes->is_object()) return;
+  for (const auto& [name, value] : attributes->items()) out.emplace_back(name, json_text(value));
+}
+
+/// The attributes of the top-level object, then those that its parts add without contradiction.
+std::vector<std::pair<std::string, std::string>> merged_attributes(const Json& objects,
+                                                                   std::string_view id) {
+  std::vector<std::pair<std::string, std::string>> merged;
+  const Json* top = find_member(objects, id);
+  if (top != nullptr) append_attributes(*top, merged);
+  std::unordered_map<std::string, std::size_t> places;
+  for (std::size_t i = 0; i < merged.size(); ++i) places.emplace(merged[i].first, i);
+  const std::size_t own = merged.size();
+  std::vector<bool> differs(own, false);
+  for (const Json& object : objects) {
+    if (&object == top) continue;
+    std::vector<std::pair<std::string, std::string>> added;
+    append_attributes(object, added);
+    for (auto& attribute : added) {
+      const auto [place, is_new] = places.try_emplace(attribute.first, merged.size());
+      if (is_new) {
+        merged.push_back(std::move(attribute));
+        differs.push_back(false);
+      } else if (place->second >= own && merged[place->second].second != attribute.second) {
+        differs[place->second] = true;
+      }
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < merged.size(); ++i) {
+    if (differs[i]) continue;
+    if (kept != i) merged[kept] = std::move(merged[i]);
+    ++kept;
+  }
+  merged.resize(kept);
+  return merged;
+}
+
+/// The value of a member that is an array of three numbers.
+std::optional<std::array<GridNumber, 3>> three_numbers(const Json& object, std::string_view name) {
+  const Json* list = find_member(object, name);
+  if (list == nullptr || !list->is_array() || list->size() != 3) return std::nullopt;
+  std::array<GridNumber, 3> numbers;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!is_number_value((*list)[axis])) return std::nullopt;
+    const auto number = exact_number(json_text((*list)[axis]));
+    if (!number) return std::nullopt;
+    numbers[axis] = number->value;
+  }
+  return numbers;
+}
+
+/// A geometry of a city object and its level of detail.
+struct Levelled {
+  const Json* geometry;
+  std::string level;
+  double rank;
+};
+
+}  // namespace
+
+struct CityFeatureReader::Header {
+  std::optional<std::array<int, 3>> decimals;
+  Position scale{1, 1, 1};
+  Position translate{};
+  Json templates;  // the list of geometries; null without any
+  std::vector<Position> template_vertices;
+
+  Position world(const Position& vertex) const {
+    Position position;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      position[axis] = vertex[axis] * scale[axis] + translate[axis];
+    }
+    return position;
+  }
+
+  /// The template of an instance; null for other geometries.
+  const Json* template_of(const Json& geometry) const {
+    const Json* number = find_member(geometry, "template");
+    if (number == nullptr || !number->is_number_unsigned()) return nullptr;
+    const auto index = number->get<std::uint64_t>();
+    return index < templates.size() ? &templates[index] : nullptr;
+  }
+
+  std::vector<Levelled> geometries_of(const Json& object) const;
+  void add_instance(const Json& geometry, const std::vector<Position>& vertices,
+                    CityShapes& shapes) const;
+};
+
+/// The geometries of a city object. An instance has the level of its template.
+std::vector<Levelled> CityFeatureReader::Header::geometries_of(const Json& object) const {
+  std::vector<Levelled> geometries;
+  const Json* list = find_member(object, "geometry");
+  if (list == nullptr || !list->is_array()) return geometries;
+  for (const Json& geometry : *list) {
+    const Json* shape = template_of(geometry);
+    std::string level = level_of(shape == nullptr ? geometry : *shape);
+    const double rank = rank_of(level);
+    geometries.push_back({&geometry, std::move(level), rank});
+  }
+  return geometries;
+}
+
+/// Places a template: its positions times the matrix, moved to the vertex of the instance.
+void CityFeatureReader::Header::add_instance(const Json& geometry,
+                                             const std::vector<Position>& vertices,
+                                             CityShapes& shapes) const {
+  const Json* shape = template_of(geometry);
+  const Json* anchors = find_member(geometry, "boundaries");
+  const Json* matrix = find_member(geometry, "transformationMatrix");
+  if (shape == nullptr || anchors == nullptr || !anchors->is_array() || anchors->size() != 1 ||
+      !(*anchors)[0].is_number_unsigned() || matrix == nullptr || !matrix->is_array() ||
+      matrix->size() != kMatrixSize) {
+    return;
+  }
+  const auto anchor = (*anchors)[0].get<std::uint64_t>();
+  if (anchor >= vertices.size() || std::isnan(vertices[anchor][0])) return;
+  std::array<double, kMatrixSize> m{};
+  for (std::size_t i = 0; i < kMatrixSize; ++i) m[i] = number_of((*matrix)[i]).value_or(0);
+  std::vector<Position> placed = template_vertices;
+  for (Position& position : placed) {
+    const Position source = position;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double* row = &m[axis * 4];
+      position[axis] = row[0] * source[0] + row[1] * source[1] + row[2] * source[2] + row[3] +
+                       vertices[anchor][axis];
+    }
+  }
+  const Json* boundaries = find_member(*shape, "boundaries");
+  if (boundaries == nullptr) return;
+  shapes.decimals.reset();
+  ShapeBuilder(placed, shapes).add(string_member(*shape, "type"), *boundaries);
+}
+
+CityFeatureReader::CityFeatureReader(std::unique_ptr<Header> header) : header_(std::move(header)) {}
+CityFeatureReader::CityFeatureReader(CityFeatureReader&&) noexcept = default;
+CityFeatureReader& CityFeatureReader::operator=(CityFeatureReader&&) noexcept = default;
+CityFeatureReader::~CityFeatureReader() = default;
+
+Result<CityFeatureReader> CityFeatureReader::make(std::string_view header, const Limits& limits) {
+  auto parsed = parse_json(header, limits);
+  if (!parsed) return std::move(parsed).error();
+  auto made = std::make_unique<Header>();
+  if (const Json* transform = find_member(*parsed, "transform")) {
+    const auto scale = three_numbers(*transform, "scale");
+    const auto translate = three_numbers(*transform, "translate");
+    if (!scale || !translate) {
+      return Error{
+          ErrorCode::malformed, "the transform has no scale and translate", {}, "/transform"};
+    }
+    made->decimals.emplace();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      made->scale[axis] = double_of((*scale)[axis]);
+      made->translate[axis] = double_of((*translate)[axis]);
+      (*made->decimals)[axis] =
+          std::max({0, -(*scale)[axis].exponent, -(*translate)[axis].exponent});
+    }
+  }
+  if (const Json* templates = find_member(*parsed, "geometry-templates")) {
+    const Json* list = find_member(*templates, "templates");
+    if (list != nullptr && list->is_array()) made->templates = *list;
+    made->template_vertices = positions_of(find_member(*templates, "vertices-templates"));
+  }
+  return CityFeatureReader(std::move(made));
+}
+
+Result<CityFeature> CityFeatureReader::read(std::string_view feature, std::string_view id,
+                                            std::optional<std::string_view> lod,
+                                            const Limits& limits) const {
+  auto parsed = parse_json(feature, limits);
+  if (!parsed) return std::move(parsed).error();
+  const Json* objects = find_member(*parsed, "CityObjects");
+  if (objects == nullptr || !objects->is_object()) {
+    return Error{ErrorCode::malformed, "the feature has no CityObjects", {}, "/CityObjects"};
+  }
+  std::vector<Position> vertices = positions_of(find_member(*parsed, "vertices"));
+  for (Position& vertex : vertices) vertex = header_->world(vertex);
+
+  CityFeature read;
+  read.attributes = merged_attributes(*objects, id);
+  read.shapes.decimals = header_->decimals;
+  double highest = kNoLevel;
+  for (const Json& object : *objects) {
+    for (const Levelled& found : header_->geometries_of(object)) {
+      highest = std::max(highest, found.rank);
+    }
+  }
+  ShapeBuilder builder(vertices, read.shapes);
+  for (const Json& object : *objects) {
+    const auto geometries = header_->geometries_of(object);
+    double best = kNoLevel;
+    for (const Levelled& found : geometries) best = std::max(best, found.rank);
+    const bool is_footprint_only = best >= 0 && best < 1 && highest >= 1;
+    if (!lod && is_footprint_only) continue;
+    for (const auto& [geometry, level, rank] : geometries) {
+      if (lod ? level != *lod : rank != best) continue;
+      const std::string type = string_member(*geometry, "type");
+      if (type == "GeometryInstance") {
+        header_->add_instance(*geometry, vertices, read.shapes);
+      } else if (const Json* boundaries = find_member(*geometry, "boundaries")) {
+        builder.add(type, *boundaries);
+      }
+    }
+  }
+  return read;
+}
+
+}  // namespace watertight::formats

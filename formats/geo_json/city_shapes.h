@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The features of a city model as map programs want them: attributes as one list of properties, and
+// the geometry of one level of detail as polygons, lines and points in world coordinates.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/limits.h"
+#include "base/result.h"
+
+namespace watertight::formats {
+
+/// The geometry of a feature. Indices refer to `positions`.
+struct CityShapes {
+  using Ring = std::vector<std::size_t>;  // does not repeat its first position
+  using Polygon = std::vector<Ring>;      // the exterior ring, then the holes
+
+  std::vector<std::array<double, 3>> positions;  // world coordinates, on the axes of the document
+  /// The most decimals that x, y and z have; nothing where the document does not limit them.
+  std::optional<std::array<int, 3>> decimals;
+  std::vector<Polygon> polygons;  // facets, of solids and surfaces alike
+  std::vector<Ring> lines;
+  std::vector<std::size_t> points;
+};
+
+/// A feature with its properties.
+struct CityFeature {
+  CityShapes shapes;
+  /// Names and values (JSON texts): the attributes of the top-level object, then those of other
+  /// objects which it does not have and in which no two of them differ.
+  std::vector<std::pair<std::string, std::string>> attributes;
+};
+
+/// Reads the features of one header (Document::header). Thread-safe.
+class CityFeatureReader {
+ public:
+  /// Errors: malformed, limit_exceeded. Cost: linear in the header.
+  static Result<CityFeatureReader> make(std::string_view header, const Limits& limits = {});
+  CityFeatureReader(CityFeatureReader&&) noexcept;
+  CityFeatureReader& operator=(CityFeatureReader&&) noexcept;
+  ~CityFeatureReader();
+
+  /// Reads a CityJSONFeature (write_feature()). Of each object the geometries of its highest level
+  /// of detail are read, those of level 0 (footprints) only if the feature has no other; or those
+  /// of level `lod`, as written. Instances of geometry templates are placed. Rings that name
+  /// vertices which do not exist, or fewer than three, are left out: what is stored without a proof
+  /// can have such. Errors: malformed, limit_exceeded. Cost: linear, the text as JSON values.
+  Result<CityFeature> read(std::string_view feature, std::string_view id,
+                           std::optional<std::string_view> lod = std::nullopt,
+                           const Limits& limits = {}) const;
+
+ private:
+  struct Header;
+  explicit CityFeatureReader(std::unique_ptr<Header> header);
+  std::unique_ptr<Header> header_;
+};
+
+}  // namespace watertight::formats

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "projection/projection.h"
+
+#include <proj.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace watertight::projection {
+namespace {
+
+struct Destroy {
+  void operator()(PJ_CONTEXT* context) const { proj_context_destroy(context); }
+  void operator()(PJ* object) const { proj_destroy(object); }
+};
+using Context = std::unique_ptr<PJ_CONTEXT, Destroy>;
+using Object = std::unique_ptr<PJ, Destroy>;
+
+constexpr int kPointsOfAnEdge = 21;  // where the edges of a rectangle are followed
+
+const char* name_of(System system) {
+  return system == System::longitude_latitude ? "OGC:CRS84" : "EPSG:3857";
+}
+
+void be_silent(void* /*user*/, int /*level*/, const char* /*message*/) {}
+
+/// PROJ as one thread uses it, with the transformations that were made so far.
+class Library {
+ public:
+  Library() : context_(proj_context_create()) {
+    proj_context_set_enable_network(context_.get(), 0);
+    proj_log_func(context_.get(), nullptr, be_silent);
+  }
+
+  PJ_CONTEXT* context() const { return context_.get(); }
+
+  /// The transformation from an EPSG system to another; null if there is none.
+  PJ* find(std::uint32_t srid, System system) {
+    if (made_.size() >= kMostKept) made_.clear();
+    const auto [place, is_new] = made_.try_emplace({srid, system});
+    if (is_new) place->second = make(srid, system);
+    return place->second.get();
+  }
+
+  bool is_north_first(std::uint32_t srid) {
+    if (north_first_.size() >= kMostKept) north_first_.clear();
+    const auto [place, is_new] = north_first_.try_emplace(srid, false);
+    if (is_new) place->second = has_north_first(srid);
+    return place->second;
+  }
+
+ private:
+  static constexpr std::size_t kMostKept = 64;  // of each map; beyond it they start anew
+
+  bool has_north_first(std::uint32_t srid) const {
+    const Object crs = horizontal(srid);
+    const Object axes(crs ? proj_crs_get_coordinate_system(context(), crs.get()) : nullptr);
+    const char* direction = nullptr;
+    return axes &&
+           proj_cs_get_axis_info(context(), axes.get(), 0, nullptr, nullptr, &direction, nullptr,
+                                 nullptr, nullptr, nullptr) != 0 &&
+           direction != nullptr && std::string_view(direction) == "north";
+  }
+
+  /// The system on x and y alone.
+  Object horizontal(std::uint32_t srid) const {
+    const std::string code = std::to_string(srid);
+    Object crs(
+        proj_create_from_database(context(), "EPSG", code.c_str(), PJ_CATEGORY_CRS, 0, nullptr));
+    if (crs && proj_get_type(crs.get()) == PJ_TYPE_COMPOUND_CRS) {
+      crs.reset(proj_crs_get_sub_crs(context(), crs.get(), 0));
+    }
+    if (!crs) return nullptr;
+    switch (proj_get_type(crs.get())) {
+      case PJ_TYPE_GEOGRAPHIC_2D_CRS:
+      case PJ_TYPE_GEOGRAPHIC_3D_CRS:
+      case PJ_TYPE_PROJECTED_CRS:
+        return crs;
+      default:  // geocentric, vertical, local: no x and y that a map has
+        return nullptr;
+    }
+  }
+
+  Object make(std::uint32_t srid, System system) const {
+    const Object source = horizontal(srid);
+    const Object target(proj_create(context(), name_of(system)));
+    if (!source || !target) return nullptr;
+    const Object change(
+        proj_create_crs_to_crs_from_pj(context(), source.get(), target.get(), nullptr, nullptr));
+    if (!change) return nullptr;
+    return Object(proj_normalize_for_visualization(context(), change.get()));
+  }
+
+  Context context_;
+  std::map<std::pair<std::uint32_t, System>, Object> made_;
+  std::map<std::uint32_t, bool> north_first_;
+};
+
+Library& library() {
+  thread_local Library library;
+  return library;
+}
+
+Error no_transformation(std::uint32_t srid, System system) {
+  return {ErrorCode::unsupported, "there is no transformation from EPSG:" + std::to_string(srid) +
+                                      " to " + name_of(system)};
+}
+
+Error outside(std::uint32_t srid, System system) {
+  return {ErrorCode::unsupported, std::string("a position has no place in both EPSG:") +
+                                      std::to_string(srid) + " and " + name_of(system)};
+}
+
+Result<Rectangle> bounds(std::uint32_t srid, System system, PJ_DIRECTION direction,
+                         const Rectangle& rectangle) {
+  PJ* change = library().find(srid, system);
+  if (change == nullptr) return no_transformation(srid, system);
+  Rectangle result;
+  const int is_done =
+      proj_trans_bounds(library().context(), change, direction, rectangle.min[0], rectangle.min[1],
+                        rectangle.max[0], rectangle.max[1], &result.min[0], &result.min[1],
+                        &result.max[0], &result.max[1], kPointsOfAnEdge);
+  proj_errno_reset(change);
+  const bool is_finite = std::isfinite(result.min[0]) && std::isfinite(result.min[1]) &&
+                         std::isfinite(result.max[0]) && std::isfinite(result.max[1]);
+  if (is_done == 0 || !is_finite) return outside(srid, system);
+  return result;
+}
+
+}  // namespace
+
+Status transform(std::uint32_t srid, System system, std::span<Position> positions) {
+  if (positions.empty()) return Done{};
+  PJ* change = library().find(srid, system);
+  if (change == nullptr) return no_transformation(srid, system);
+  Position& first = positions.front();
+  proj_trans_generic(change, PJ_FWD, &first[0], sizeof(Position), positions.size(), &first[1],
+                     sizeof(Position), positions.size(), nullptr, 0, 0, nullptr, 0, 0);
+  proj_errno_reset(change);
+  for (const Position& position : positions) {
+    if (!std::isfinite(position[0]) || !std::isfinite(position[1])) return outside(srid, system);
+  }
+  return Done{};
+}
+
+bool is_north_first(std::uint32_t srid) { return library().is_north_first(srid); }
+
+Result<Rectangle> bounds_of(std::uint32_t srid, System system, const Rectangle& rectangle) {
+  return bounds(srid, system, PJ_FWD, rectangle);
+}
+
+Result<Rectangle> bounds_in(std::uint32_t srid, System system, const Rectangle& rectangle) {
+  return bounds(srid, system, PJ_INV, rectangle);
+}
+
+}  // namespace watertight::projection

@@ -129,7 +129,8 @@ struct StoreChoice {
 struct ServeCommand {
   StoreChoice store;
   std::string listen = "127.0.0.1:8080";
-  std::string probes;  // "" for no address of their own
+  std::string probes;    // "" for no address of their own
+  std::string base_url;  // the start of links, "" for what requests say
   std::optional<std::size_t> connections_per_address;
   bool requires_preconditions = false;
 };

@@ -17,6 +17,7 @@
 #include "cli/terminal/printable.h"
 #include "pipeline/export.h"
 #include "pipeline/stored/attributes.h"
+#include "server/features/links.h"
 #include "server/serve.h"
 
 namespace watertight::cli {
@@ -64,6 +65,14 @@ Exit run(const ServeCommand& command) {
     // A service that was stopped before it listened has done what it was told.
     return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
   };
+  if (!command.base_url.empty()) {
+    if (const Status checked = server::check_base_url(command.base_url); !checked) {
+      complain("--base-url", checked.error());
+      return Exit::error;
+    }
+    options.base_url = command.base_url;
+    while (options.base_url.ends_with('/')) options.base_url.pop_back();
+  }
   limit_addresses(command, options.server);
   options.requires_preconditions = command.requires_preconditions;
   if (!command.probes.empty()) {

@@ -16,6 +16,7 @@
 namespace watertight::server {
 
 inline constexpr std::string_view kJson = "application/json";
+inline constexpr std::string_view kGeoJson = "application/geo+json";
 inline constexpr std::string_view kCityJson = "application/city+json";
 inline constexpr std::string_view kCityJsonSeq = "application/city+json-seq";
 inline constexpr std::string_view kObj = "model/obj";
@@ -46,13 +47,14 @@ struct Route {
 };
 
 /// The parameters of a list of items; others are names of attributes.
-inline constexpr std::string_view kItemParameters[] = {"f",    "limit",    "after",
-                                                       "bbox", "bbox-crs", "proven"};
+inline constexpr std::string_view kItemParameters[] = {
+    "f", "limit", "after", "bbox", "bbox-crs", "datetime", "proven", "crs", "lod"};
 
 /// All routes; the OpenAPI document describes exactly these (a test compares them).
 const std::vector<Route>& routes();
 
 Response get_landing(const RoutedRequest& request);
+Response get_conformance(const RoutedRequest& request);
 Response get_api(const RoutedRequest& request);
 Response get_health(const RoutedRequest& request);
 Response get_readiness(const RoutedRequest& request);

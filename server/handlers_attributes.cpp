@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "server/features/links.h"
 #include "server/json_answers.h"
 
 namespace watertight::server {
@@ -79,7 +80,7 @@ Response get_queryables(const RoutedRequest& request) {
   const auto chosen = request.service.store->attributes(id);
   if (!chosen) return to_response(to_problem(chosen.error()));
   Json json{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-            {"$id", "/collections/" + percent_encode(id) + "/queryables"},
+            {"$id", base_url(request) + "/collections/" + percent_encode(id) + "/queryables"},
             {"type", "object"},
             {"title", id},
             {"properties", Json::object()},

@@ -1,23 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Handlers of collections as a whole: they list, show, rename, recount and remove them.
+#include <functional>
 #include <memory>
 #include <optional>
 
+#include "server/features/links.h"
+#include "server/features/systems.h"
 #include "server/items/preconditions.h"
 #include "server/json_answers.h"
 
 namespace watertight::server {
 namespace {
 
-Json collection_json(const store::StoredCollection& collection) {
-  const std::string self = "/collections/" + percent_encode(collection.id);
-  Json json{{"id", collection.id}, {"itemType", "feature"}};
-  json["crs"] = Json::array({crs_uri(collection.srid)});
+/// A collection with links that start with `base`.
+Json collection_json(const store::StoredCollection& collection, const std::string& base) {
+  const std::string self = base + "/collections/" + percent_encode(collection.id);
+  Json json{{"id", collection.id}, {"title", collection.id}, {"itemType", "feature"}};
+  json["crs"] = system_uris(collection.srid);
   json["storageCrs"] = crs_uri(collection.srid);
   if (collection.box) {
-    json["extent"]["spatial"] = {{"bbox", Json::array({box_json(*collection.box)})},
-                                 {"crs", crs_uri(collection.srid)}};
+    if (const auto box = box_in_crs84(collection.srid, *collection.box)) {
+      json["extent"]["spatial"] = {{"bbox", Json::array({box_json(*box)})},
+                                   {"crs", system_uri(PlaceSystem::crs84h, collection.srid)}};
+    }
+    json["storageBbox"] = box_json(*collection.box);
   }
   json["features"] = collection.features;
   json["solids"] = collection.solids;
@@ -26,7 +33,7 @@ Json collection_json(const store::StoredCollection& collection) {
   json["invalid"] = pipeline::to_string(collection.policy);
   json["links"] = Json::array(
       {link(self, "self", kJson, "this collection"),
-       link(self + "/items", "items", kJson, "its features"),
+       link(self + "/items", "items", kGeoJson, "its features"),
        link(self + "/queryables", "http://www.opengis.net/def/rel/ogc/1.0/queryables",
             "application/schema+json", "attributes that can be queried"),
        link(self + "/export?f=wt", "enclosure", kContainer, "all of it as a Watertight file"),
@@ -35,9 +42,10 @@ Json collection_json(const store::StoredCollection& collection) {
   return json;
 }
 
-Response collection_response(const Result<store::StoredCollection>& collection) {
+Response collection_response(const Result<store::StoredCollection>& collection,
+                             const std::string& base) {
   if (!collection) return to_response(to_problem(collection.error()));
-  return json_response(collection_json(*collection));
+  return json_response(collection_json(*collection, base));
 }
 
 /// The members of a collection that clients can change.
@@ -73,7 +81,7 @@ Result<CollectionChange> change_of(const std::string& body) {
   return change;
 }
 
-using Upkeep = Response (*)(SolidStore&, const std::string&, const CancelPoll&);
+using Upkeep = std::function<Response(SolidStore&, const std::string&, const CancelPoll&)>;
 
 /// Work that touches all features of a collection, which can take minutes. One such work is done at
 /// a time, so that they leave threads to others.
@@ -98,14 +106,17 @@ std::optional<Response> unless_change_is_wanted(const RoutedRequest& request) {
 
 Response get_collections(const RoutedRequest& request) {
   if (auto refusal = json_only(request)) return *std::move(refusal);
-  const auto limit = limit_of_request(request.target, request.service.options);
+  // Clients such as GDAL expect all collections at once.
+  const auto limit = limit_of_request(request.target, request.service.options,
+                                      request.service.options.largest_page);
   if (!limit) return to_response(to_problem(limit.error()));
   const std::string* given = request.target.parameter("after");
   const std::string after = given == nullptr ? std::string() : *given;
   const auto page = request.service.store->collections(*limit, after);
   if (!page) return to_response(to_problem(page.error()));
+  const std::string base = base_url(request);
   const auto path = [&](const std::string& start) {
-    std::string text = "/collections?limit=" + std::to_string(*limit);
+    std::string text = base + "/collections?limit=" + std::to_string(*limit);
     if (!start.empty()) text += "&after=" + percent_encode(start);
     return text;
   };
@@ -116,7 +127,7 @@ Response get_collections(const RoutedRequest& request) {
   }
   json["collections"] = Json::array();
   for (const store::StoredCollection& collection : page->collections) {
-    json["collections"].push_back(collection_json(collection));
+    json["collections"].push_back(collection_json(collection, base));
   }
   return json_response(json);
 }
@@ -127,7 +138,7 @@ Response get_collection(const RoutedRequest& request) {
   if (!collection) return to_response(to_problem(collection.error()));
   const std::string etag = etag_of_state(collection->state, "json");
   if (auto unneeded = unless_needed(request.request, etag)) return *std::move(unneeded);
-  Response response = json_response(collection_json(*collection));
+  Response response = json_response(collection_json(*collection, base_url(request)));
   response.headers.push_back({"ETag", etag});
   return response;
 }
@@ -142,14 +153,15 @@ Response patch_collection(const RoutedRequest& request) {
   if (changed && change->id) changed = store.rename_collection(id, *change->id);
   if (!changed) return to_response(to_problem(changed.error()));
   if (change->id) id = *change->id;
-  Response response = collection_response(store.collection(id));
+  Response response = collection_response(store.collection(id), base_url(request));
   response.headers.push_back({"Content-Location", "/collections/" + percent_encode(id)});
   return response;
 }
 
 Response post_recount(const RoutedRequest& request) {
-  return upkeep(request, [](SolidStore& store, const std::string& id, const CancelPoll&) {
-    return collection_response(store.recount(id));
+  const std::string base = base_url(request);
+  return upkeep(request, [base](SolidStore& store, const std::string& id, const CancelPoll&) {
+    return collection_response(store.recount(id), base);
   });
 }
 

@@ -30,9 +30,10 @@ Json box_json(const store::StoredBox& box) {
   return Json::array({box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]});
 }
 
-Result<std::uint64_t> limit_of_request(const Target& target, const RouteOptions& options) {
+Result<std::uint64_t> limit_of_request(const Target& target, const RouteOptions& options,
+                                       std::uint64_t usual) {
   const std::string* text = target.parameter("limit");
-  if (text == nullptr) return options.default_page;
+  if (text == nullptr) return usual;
   std::uint64_t limit = 0;
   const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), limit);
   if (error == std::errc::result_out_of_range) return options.largest_page;

@@ -28,12 +28,13 @@ std::optional<Response> json_only(const RoutedRequest& request);
 /// The minima, then the maxima, on x, y and z.
 Json box_json(const store::StoredBox& box);
 
-/// The most entries that the client wants on a page: the parameter `limit`. Errors:
-/// invalid_argument.
 /// The parameter `proven`: only features that are proven, or that are not. Errors:
 /// invalid_argument.
 Result<std::optional<bool>> proof_of_request(const Target& target);
 
-Result<std::uint64_t> limit_of_request(const Target& target, const RouteOptions& options);
+/// The most entries that the client wants on a page: the parameter `limit`, `usual` without it.
+/// Errors: invalid_argument.
+Result<std::uint64_t> limit_of_request(const Target& target, const RouteOptions& options,
+                                       std::uint64_t usual);
 
 }  // namespace watertight::server

@@ -90,6 +90,7 @@ const std::vector<Route>& routes() {
   static const std::vector<Route> table{
       {"GET", "/", Lane::quick, get_landing, {"f"}},
       {"GET", "/api", Lane::quick, get_api, {"f"}},
+      {"GET", "/conformance", Lane::quick, get_conformance, {"f"}},
       {"GET", "/healthz", Lane::quick, get_health, {}},
       {"GET", "/readyz", Lane::quick, get_readiness, {}},
       {"GET", "/collections", Lane::reading, get_collections, {"f", "limit", "after"}},
@@ -116,7 +117,7 @@ const std::vector<Route>& routes() {
        "/collections/{collectionId}/items/{itemId}",
        Lane::reading,
        get_item,
-       {"f", "solid"}},
+       {"f", "solid", "crs", "lod"}},
       {"DELETE", "/collections/{collectionId}/items/{itemId}", Lane::small, delete_item, {}},
       {"GET",
        "/collections/{collectionId}/export",

@@ -27,7 +27,8 @@ struct RouteOptions {
   std::uint64_t default_page = 10;
   std::uint64_t largest_findings = 1000;  // the most findings of a report in an answer
   std::size_t longest_report = std::size_t{256} << 20U;  // of POST /validate, bytes
-  bool requires_preconditions = false;                   // on every write; without one it gets 428
+  std::string base_url;  // the start of links; "": from the request (server/features/links.h)
+  bool requires_preconditions = false;  // on every write; without one it gets 428
 };
 
 /// The parts that routes work with. Store and workers must outlive the service and be thread-safe.

@@ -187,6 +187,7 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   Service service{store->get(), &workers, {}, readiness, &cache, &export_files, &document_memory};
   service.options.limits = options.limits;
   service.options.requires_preconditions = options.requires_preconditions;
+  service.options.base_url = options.base_url;
   const auto logger = make_logger();
   const LogLine log = [logger](const std::string& line) { logger->info(line); };
   std::unique_ptr<HttpServer> probes;

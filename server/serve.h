@@ -24,6 +24,7 @@ struct ServeOptions {
   /// A second address that answers /healthz and /readyz only, with a thread and connections of its
   /// own.
   std::optional<ServerOptions> probes = {};
+  std::string base_url;                        // RouteOptions::base_url
   bool requires_preconditions = false;         // with every write of features
   std::uint64_t document_memory = 4ULL << 30;  // of the documents that are read whole, bytes
   std::size_t cache_bytes = 64ULL << 20;       // of the answers for items that are kept

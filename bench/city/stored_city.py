@@ -20,7 +20,7 @@ from service import Service, temporary_folder  # noqa: E402
 
 
 def items(service, collection):
-    path = f"/collections/{collection}/items?limit=1000"
+    path = f"/collections/{collection}/items?limit=1000&f=summary"
     while path:
         page = json.loads(service.request("GET", path)[1])
         yield from page["features"]

@@ -103,7 +103,7 @@ def main():
         if status != 201:
             raise SystemExit(f"load: storing gave {status}: {body[:300]!r}")
         items = []
-        path = "/collections/city/items?limit=1000"
+        path = "/collections/city/items?limit=1000&f=summary"
         while path:
             page = json.loads(service.request("GET", path)[1])
             items += [feature["id"] for feature in page["features"] if feature["properties"]["solids"] == 3]

@@ -39,7 +39,7 @@ def store(service, city):
     if status != 201:
         raise SystemExit(f"paired_reads: storing gave {status}: {body[:300]!r}")
     ids = []
-    path = "/collections/city/items?limit=1000"
+    path = "/collections/city/items?limit=1000&f=summary"
     while path:
         page = json.loads(service.request("GET", path)[1])
         ids += [feature["id"] for feature in page["features"]]

@@ -71,7 +71,7 @@ def main():
         names = [f"scale-{size}" for size in options.features]
         for name, size in zip(names, options.features):
             fill(service, name, size)
-        first = json.loads(service.request("GET", f"/collections/{names[0]}/items")[1])["features"][0]
+        first = json.loads(service.request("GET", f"/collections/{names[0]}/items?f=summary")[1])["features"][0]
         crs = json.loads(service.request("GET", f"/collections/{names[0]}")[1])["storageCrs"]
         box = ",".join(str(first["bbox"][i]) for i in (0, 1, 3, 4))
         client = Client(service.port)

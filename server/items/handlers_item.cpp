@@ -8,6 +8,7 @@
 
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
+#include "server/features/feature_text.h"
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
 #include "server/items/ranges.h"
@@ -21,7 +22,8 @@ struct ItemFormat {
   std::string_view type;
 };
 
-constexpr std::array<ItemFormat, 7> kFormats{{{"cityjson", kCityJson},
+constexpr std::array<ItemFormat, 8> kFormats{{{"cityjson", kCityJson},
+                                              {"geojson", kGeoJson},
                                               {"json", kJson},
                                               {"cityjsonseq", kCityJsonSeq},
                                               {"obj", kObj},
@@ -52,14 +54,17 @@ struct ItemRequest {
   std::string id;
   ItemFormat format;
   std::string solid;  // the parameter `solid`, "" if there is none
+  FeatureForm form;   // of GeoJSON; others are in the storage CRS
   Request message;    // of a GET or HEAD, so without a body
 
   /// The word that names the representation in its tag.
   std::string representation() const {
+    if (is_geo_json()) return form.name();
     std::string name(format.parameter);
     if (!solid.empty()) name += '-' + percent_encode(solid);
     return name;
   }
+  bool is_geo_json() const { return format.parameter == "geojson"; }
   std::string key(std::uint64_t version) const {
     return collection + '/' + id + '/' + etag_of(version, representation());
   }
@@ -95,6 +100,11 @@ Bytes bytes_of(std::string_view text) {
 
 Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
   const std::string_view format = item.format.parameter;
+  if (item.is_geo_json()) {
+    const auto text =
+        FeatureWriter(item.form, item.service.options.limits).write(std::move(feature));
+    return text ? Result<Bytes>(bytes_of(*text + "\n")) : Result<Bytes>(text.error());
+  }
   if (format == "blob") return blob_of(feature, item.solid, item.service.options.limits);
   if (format == "proof") {
     const auto encoded = pipeline::unpack(std::move(feature));
@@ -122,9 +132,10 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
 /// The representation of a feature that was read, which the cache keeps.
 Response represented(StoredFeature feature, const ItemRequest& item) {
   const std::uint64_t version = feature.version;
-  const std::vector<HeaderField> headers{{"ETag", etag_of(version, item.representation())},
-                                         {"Vary", "Accept"},
-                                         {"Content-Crs", crs_header(feature.srid)}};
+  const std::vector<HeaderField> headers{
+      {"ETag", etag_of(version, item.representation())},
+      {"Vary", "Accept"},
+      {"Content-Crs", content_crs(item.form.system, feature.srid)}};
   auto body = represent(std::move(feature), item);
   if (!body) {
     Problem problem = to_problem(body.error());
@@ -178,6 +189,7 @@ Response get_item(const RoutedRequest& request) {
     return refuse(
         406, "not-acceptable",
         "an item is available as application/city+json (f=cityjson), application/json (f=json), "
+        "application/geo+json (f=geojson), "
         "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
         "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs "
         "and findings with f=proof");
@@ -186,11 +198,23 @@ Response get_item(const RoutedRequest& request) {
   if (solid != nullptr && format->parameter != "blob") {
     return refuse(400, "invalid-argument", "the parameter solid is for f=blob only");
   }
+  FeatureForm form{PlaceSystem::storage, std::nullopt};
+  if (format->parameter == "geojson") {
+    const auto collection = request.service.store->collection(request.target.segments[1]);
+    if (!collection) return to_response(to_problem(collection.error()));
+    const auto wanted = FeatureForm::of_request(request.target, collection->srid);
+    if (!wanted) return to_response(to_problem(wanted.error()));
+    form = *wanted;
+  } else if (request.target.parameter("crs") != nullptr ||
+             request.target.parameter("lod") != nullptr) {
+    return refuse(400, "invalid-argument", "the parameters crs and lod are for f=geojson only");
+  }
   const ItemRequest item{request.service,
                          request.target.segments[1],
                          request.target.segments[3],
                          *format,
                          solid == nullptr ? std::string() : *solid,
+                         std::move(form),
                          request.request};
   const auto version = request.service.store->version(item.collection, item.id);
   if (!version) return to_response(to_problem(version.error()));

@@ -149,7 +149,7 @@ def check(service, writers):
                 expected.add(name)
         complaints += check_together(service, writer)
     listed = []
-    path = "/collections/town/items?limit=1000"
+    path = "/collections/town/items?limit=1000&f=summary"
     while path:
         status, body = read(service, path)
         if status != 200:

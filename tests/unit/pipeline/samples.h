@@ -300,6 +300,12 @@ class MemoryStore : public SolidStore {
       collection.solids += feature.solids.size();
       collection.unproven += feature.unproven();
       collection.unproven_features += feature.is_proven() ? 0 : 1;
+      if (!feature.box) continue;
+      if (!collection.box) collection.box = feature.box;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        collection.box->min[axis] = std::min(collection.box->min[axis], feature.box->min[axis]);
+        collection.box->max[axis] = std::max(collection.box->max[axis], feature.box->max[axis]);
+      }
     }
     if (policies_.contains(id)) collection.policy = policies_.at(id);
     collection.state = std::to_string(version_) + "-" + std::to_string(collection.features);

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/features/feature_text.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "formats/city_json/city_json.h"
+#include "formats/geo_json/geo_json.h"
+#include "server/json_answers.h"
+
+namespace watertight::server {
+namespace {
+
+using Properties = std::vector<std::pair<std::string, std::string>>;
+
+constexpr int kDecimalsOfDegrees = 9;  // a tenth of a millimetre
+constexpr int kDecimalsOfMetres = 4;
+constexpr int kMostDecimalsOfHeights = 20;
+constexpr std::size_t kMostReaders = 64;
+
+std::string json_string(std::string_view text) {
+  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// The facts about a feature that the store knows.
+Properties own_properties(const StoredFeature& feature) {
+  const auto add = [](Properties& out, std::string_view name, std::string value) {
+    out.emplace_back(std::string(kOwnProperty).append(name), std::move(value));
+  };
+  Properties properties;
+  add(properties, "type", json_string(feature.type));
+  add(properties, "proven", feature.is_proven() ? "true" : "false");
+  add(properties, "solids", std::to_string(feature.solids.size()));
+  add(properties, "unproven_solids", std::to_string(feature.unproven()));
+  add(properties, "version", std::to_string(feature.version));
+  return properties;
+}
+
+/// Brings the shapes into another system, with as many decimals as its unit needs.
+Status bring_into(PlaceSystem system, std::uint32_t srid, formats::CityShapes& shapes) {
+  const Status changed = change_system(system, srid, shapes.positions);
+  if (!changed) return changed;
+  if (system == PlaceSystem::storage) {
+    if (shapes.decimals && projection::is_north_first(srid)) {
+      std::swap((*shapes.decimals)[0], (*shapes.decimals)[1]);
+    }
+    return Done{};
+  }
+  const int plane = system == PlaceSystem::web_mercator ? kDecimalsOfMetres : kDecimalsOfDegrees;
+  const int heights = shapes.decimals ? (*shapes.decimals)[2] : kMostDecimalsOfHeights;
+  shapes.decimals = {plane, plane, heights};
+  return Done{};
+}
+
+Error damaged(const Error& error) {
+  return {ErrorCode::unavailable, "the stored feature cannot be decoded: " + to_string(error)};
+}
+
+}  // namespace
+
+Result<FeatureForm> FeatureForm::of_request(const Target& target, std::uint32_t srid) {
+  auto system = system_of_request(target, "crs", srid);
+  if (!system) return std::move(system).error();
+  FeatureForm form{*system, std::nullopt};
+  if (const std::string* lod = target.parameter("lod")) form.lod = *lod;
+  return form;
+}
+
+std::string FeatureForm::name() const {
+  std::string name = "geojson";
+  switch (system) {
+    case PlaceSystem::crs84h:
+    case PlaceSystem::crs84:
+      break;
+    case PlaceSystem::web_mercator:
+      name += "-mercator";
+      break;
+    case PlaceSystem::storage:
+      name += "-storage";
+      break;
+  }
+  if (lod) name += "-lod" + percent_encode(*lod);
+  return name;
+}
+
+Result<formats::CityFeature> FeatureWriter::read(const Document& document, const std::string& id) {
+  const std::string_view header = document.header;
+  auto reader = readers_.find(header);
+  if (reader == readers_.end()) {
+    auto made = formats::CityFeatureReader::make(header, limits_);
+    if (!made) return std::move(made).error();
+    if (readers_.size() >= kMostReaders) readers_.clear();
+    reader = readers_.emplace(std::string(header), *std::move(made)).first;
+  }
+  const auto text = formats::write_feature(document, document.features.front());
+  if (!text) return text.error();
+  return reader->second.read(*text, id, form_.lod, limits_);
+}
+
+Result<std::string> FeatureWriter::write(StoredFeature stored) {
+  const std::string id = stored.id;
+  const std::uint32_t srid = stored.srid;
+  Properties properties = own_properties(stored);
+  auto document = pipeline::from_stored(std::move(stored), limits_);
+  if (document && document->format != Format::city_json &&
+      document->format != Format::city_json_seq) {
+    document = formats::as_city_model(*document);
+  }
+  if (!document) return damaged(document.error());
+  auto feature = read(*document, id);
+  if (!feature) return damaged(feature.error());
+  if (const Status brought = bring_into(form_.system, srid, feature->shapes); !brought) {
+    feature->shapes = {};
+    properties.emplace_back(std::string(kOwnProperty) + "no_geometry",
+                            json_string(brought.error().message));
+  }
+  return formats::geo_json_feature(id, *feature, properties);
+}
+
+}  // namespace watertight::server

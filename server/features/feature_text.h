@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Stored features as GeoJSON, for lists and for one item. Internal to server/.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "formats/geo_json/city_shapes.h"
+#include "server/features/systems.h"
+#include "server/handlers.h"
+
+namespace watertight::server {
+
+/// The choices of a client for the GeoJSON of features.
+struct FeatureForm {
+  PlaceSystem system = PlaceSystem::crs84h;
+  std::optional<std::string> lod;  // nothing: the highest of each object
+
+  /// The form that a request asks for, of features in EPSG system `srid`. Errors:
+  /// invalid_argument.
+  static Result<FeatureForm> of_request(const Target& target, std::uint32_t srid);
+  /// The word that names the form in a tag.
+  std::string name() const;
+};
+
+/// The names of the properties that the service adds to the attributes of a feature begin so.
+inline constexpr std::string_view kOwnProperty = "wt_";
+
+/// Writes stored features as GeoJSON; keeps what features of one document share from one feature to
+/// the next.
+class FeatureWriter {
+ public:
+  FeatureWriter(FeatureForm form, const Limits& limits) : form_(std::move(form)), limits_(limits) {}
+
+  /// The Feature in one line. A geometry that has no coordinates in the wanted CRS is null, and the
+  /// property wt_no_geometry has the reason. Errors: unavailable for a feature that cannot be
+  /// decoded.
+  Result<std::string> write(StoredFeature stored);
+
+ private:
+  Result<formats::CityFeature> read(const Document& document, const std::string& id);
+
+  FeatureForm form_;
+  Limits limits_;
+  std::map<std::string, formats::CityFeatureReader, std::less<>> readers_;  // by header
+};
+
+}  // namespace watertight::server

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The handler of lists of features: pages of GeoJSON, or of facts alone.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "pipeline/stored/attributes.h"
+#include "server/features/feature_text.h"
+#include "server/features/links.h"
+#include "server/items/preconditions.h"
+#include "server/items/representation_cache.h"
+#include "server/json_answers.h"
+
+namespace watertight::server {
+namespace {
+
+constexpr std::size_t kFewFeatures = 20;                     // that take a moment to decode
+constexpr std::size_t kLongestPage = std::size_t{32} << 20;  // bytes; a page ends after them
+
+/// How much of an extent in x and y a box covers, 0 to 1.
+double share_of(const store::StoredBox& extent, const store::StoredBox& box) {
+  double share = 1;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double low = std::max(extent.min[axis], box.min[axis]);
+    const double high = std::min(extent.max[axis], box.max[axis]);
+    const double length = extent.max[axis] - extent.min[axis];
+    share *= length > 0 ? std::clamp((high - low) / length, 0.0, 1.0) : 1;
+  }
+  return share;
+}
+
+/// Whether the text can be an instant or an interval of RFC 3339. No feature has a time by which it
+/// could be selected, so all match.
+bool is_datetime(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789-:.+TZtz/") == std::string_view::npos;
+}
+
+/// The conditions in the parameters that are names of attributes.
+Result<std::vector<store::AttributeCondition>> conditions_of_request(const Target& target) {
+  std::vector<store::AttributeCondition> conditions;
+  for (const auto& [name, value] : target.parameters) {
+    if (std::find(std::begin(kItemParameters), std::end(kItemParameters), name) !=
+        std::end(kItemParameters)) {
+      continue;
+    }
+    auto condition = pipeline::condition_of(name, value);
+    if (!condition) return std::move(condition).error();
+    conditions.push_back(*std::move(condition));
+  }
+  return conditions;
+}
+
+/// The number of features of a collection that are proven, or are not, or of all.
+std::uint64_t matched(const store::StoredCollection& collection, std::optional<bool> is_proven) {
+  if (!is_proven) return collection.features;
+  return *is_proven ? collection.features - collection.unproven_features
+                    : collection.unproven_features;
+}
+
+/// The facts about a feature that need no look into it.
+Json summary_json(const std::string& base, const std::string& collection,
+                  const store::FeatureSummary& feature) {
+  Json json{{"type", "Feature"}, {"id", feature.id}};
+  if (feature.box) json["bbox"] = box_json(*feature.box);
+  json["geometry"] = nullptr;
+  json["properties"] = {{"type", feature.type},
+                        {"solids", feature.solids},
+                        {"blobBytes", feature.blob_bytes},
+                        {"proven", feature.is_proven},
+                        {"unprovenSolids", feature.unproven},
+                        {"version", feature.version}};
+  const std::string path = base + item_path(collection, feature.id);
+  json["links"] = Json::array({link(path + "?f=cityjson", "item", kCityJson, "CityJSON"),
+                               link(path + "?f=obj", "alternate", kObj, "OBJ"),
+                               link(path + "?f=wt", "alternate", kContainer, "Watertight file")});
+  return json;
+}
+
+/// The form of a page: GeoJSON under one of two types, or the facts alone.
+struct PageType {
+  bool is_summary = false;
+  std::string_view type;
+};
+
+std::optional<PageType> page_type(const RoutedRequest& request) {
+  if (const std::string* format = request.target.parameter("f")) {
+    if (*format == "geojson") return PageType{false, kGeoJson};
+    if (*format == "json") return PageType{false, kJson};
+    if (*format == "summary") return PageType{true, kJson};
+    return std::nullopt;
+  }
+  const auto offer = negotiate(request.request.header("accept"), {kGeoJson, kJson});
+  if (!offer) return std::nullopt;
+  return PageType{false, *offer == 0 ? kGeoJson : kJson};
+}
+
+/// A page that was read from the database and is to be written, apart from the request, so that
+/// another thread can write it.
+struct PageWork {
+  Service service;
+  std::string collection;
+  std::uint32_t srid = 0;
+  FeatureForm form;
+  PageType type;
+  std::string base;
+  std::string path;   // of this page, without the parameter `after`
+  std::string after;  // "" at the start
+  std::optional<std::uint64_t> matched;
+  bool counts_itself = false;  // the page is all that matches if nothing follows it
+  store::FeaturePage page;
+
+  std::string key(const store::FeatureSummary& feature) const {
+    return collection + '/' + feature.id + '/' + etag_of(feature.version, form.name() + "-line");
+  }
+  std::string href(const std::string& start) const {
+    if (start.empty()) return path;
+    return path + (path.find('?') == std::string::npos ? '?' : '&') +
+           ("after=" + percent_encode(start));
+  }
+};
+
+std::string path_without_after(const RoutedRequest& request, const std::string& base) {
+  std::string path = base + "/collections/" + percent_encode(request.target.segments[1]) + "/items";
+  char separator = '?';
+  for (const auto& [name, value] : request.target.parameters) {
+    if (name == "after") continue;
+    path += separator + percent_encode(name) + "=" + percent_encode(value);
+    separator = '&';
+  }
+  return path;
+}
+
+/// The members of a page before its features. `next` is where the next page begins, "" for the
+/// last; `returned` the number of features.
+Json page_head(const PageWork& work, const std::string& next, std::size_t returned) {
+  Json json{{"type", "FeatureCollection"}};
+  json["links"] = Json::array({link(work.href(work.after), "self", work.type.type, "this page")});
+  if (!next.empty()) {
+    json["links"].push_back(link(work.href(next), "next", work.type.type, "next page"));
+  }
+  json["links"].push_back(link(work.base + "/collections/" + percent_encode(work.collection),
+                               "collection", kJson, "the collection"));
+  if (next.empty() && work.after.empty() && work.counts_itself) {
+    json["numberMatched"] = returned;
+  } else if (work.matched) {
+    json["numberMatched"] = *work.matched;
+  }
+  json["numberReturned"] = returned;
+  return json;
+}
+
+Response page_response(const PageWork& work, Json head, const std::string& features) {
+  std::string body = head.dump(-1, ' ', false, Json::error_handler_t::replace);
+  body.pop_back();
+  body.append(R"(,"features":[)").append(features).append("]}\n");
+  const PlaceSystem system = work.type.is_summary ? PlaceSystem::storage : work.form.system;
+  return Response{200,
+                  std::string(work.type.type),
+                  std::move(body),
+                  {{"Content-Crs", content_crs(system, work.srid)}, {"Vary", "Accept"}}};
+}
+
+Response summary_page(const PageWork& work) {
+  std::string features;
+  for (const store::FeatureSummary& feature : work.page.features) {
+    if (!features.empty()) features += ',';
+    features += summary_json(work.base, work.collection, feature)
+                    .dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  return page_response(work, page_head(work, work.page.next, work.page.features.size()), features);
+}
+
+/// The text of a feature that the cache has; null without.
+RepresentationCache::Answer kept_text(const PageWork& work, const store::FeatureSummary& feature) {
+  return work.service.cache == nullptr ? nullptr : work.service.cache->find(work.key(feature));
+}
+
+/// Reads the feature and writes its text, "" if it was removed meanwhile.
+Result<std::string> text_of(const PageWork& work, const store::FeatureSummary& feature,
+                            FeatureWriter& writer) {
+  if (const auto kept = kept_text(work, feature)) return kept->body;
+  auto stored = work.service.store->get(work.collection, feature.id);
+  if (!stored) {
+    if (stored.error().code == ErrorCode::not_found) return std::string();
+    return std::move(stored).error();
+  }
+  const bool is_same = stored->version == feature.version;
+  auto text = writer.write(*std::move(stored));
+  if (text && is_same && work.service.cache != nullptr) {
+    work.service.cache->keep(work.key(feature),
+                             std::make_shared<const Response>(Response{200, "", *text}));
+  }
+  return text;
+}
+
+Response written_page(const PageWork& work, const CancelPoll& is_cancelled) {
+  FeatureWriter writer(work.form, work.service.options.limits);
+  std::string features;
+  std::size_t returned = 0;
+  std::string next = work.page.next;
+  for (const store::FeatureSummary& feature : work.page.features) {
+    if (is_cancelled && is_cancelled()) {
+      return to_response(to_problem({ErrorCode::cancelled, "the page was not finished in time"}));
+    }
+    const auto text = text_of(work, feature, writer);
+    if (!text) return to_response(to_problem(text.error()));
+    if (text->empty()) continue;
+    if (!features.empty()) features += ',';
+    features += *text;
+    ++returned;
+    if (features.size() > kLongestPage && &feature != &work.page.features.back()) {
+      next = feature.id;
+      break;
+    }
+  }
+  return page_response(work, page_head(work, next, returned), features);
+}
+
+Response page_of(std::shared_ptr<const PageWork> work, const CancelPoll& is_cancelled) {
+  if (work->type.is_summary) return summary_page(*work);
+  const auto& features = work->page.features;
+  const auto missing = static_cast<std::size_t>(std::count_if(
+      features.begin(), features.end(),
+      [&](const store::FeatureSummary& feature) { return kept_text(*work, feature) == nullptr; }));
+  if (missing == 0) return written_page(*work, is_cancelled);
+  Response response;
+  response.further = std::make_shared<const FurtherWork>(FurtherWork{
+      missing <= kFewFeatures ? Lane::small : Lane::computing,
+      {},
+      [work](const CancelPoll& is_unwanted) { return written_page(*work, is_unwanted); }});
+  return response;
+}
+
+}  // namespace
+
+Response get_items(const RoutedRequest& request) {
+  const auto type = page_type(request);
+  if (!type) {
+    return refuse(406, "not-acceptable",
+                  "a list of items is available as application/geo+json (f=geojson) or "
+                  "application/json (f=json, or f=summary for facts without geometry)");
+  }
+  const auto collection = request.service.store->collection(request.target.segments[1]);
+  if (!collection) return to_response(to_problem(collection.error()));
+  const auto form = FeatureForm::of_request(request.target, collection->srid);
+  if (!form) return to_response(to_problem(form.error()));
+  const auto box = box_of_request(request.target, *collection);
+  if (!box) return to_response(to_problem(box.error()));
+  const std::string* datetime = request.target.parameter("datetime");
+  if (datetime != nullptr && !is_datetime(*datetime)) {
+    return refuse(400, "invalid-argument", "datetime is an instant or interval of RFC 3339");
+  }
+  const auto limit = limit_of_request(request.target, request.service.options,
+                                      request.service.options.default_page);
+  if (!limit) return to_response(to_problem(limit.error()));
+  const auto is_proven = proof_of_request(request.target);
+  if (!is_proven) return to_response(to_problem(is_proven.error()));
+  auto where = conditions_of_request(request.target);
+  if (!where) return to_response(to_problem(where.error()));
+  const bool has_conditions = !where->empty();
+  const std::string* after = request.target.parameter("after");
+
+  auto work = std::make_shared<PageWork>();
+  work->service = request.service;
+  work->collection = collection->id;
+  work->srid = collection->srid;
+  work->form = *form;
+  work->type = *type;
+  work->base = base_url(request);
+  work->path = path_without_after(request, work->base);
+  if (after != nullptr) work->after = *after;
+  work->counts_itself = true;
+  if (!box->box && !box->is_empty && !has_conditions) {
+    work->matched = matched(*collection, *is_proven);
+  }
+  if (!box->is_empty) {
+    auto page = request.service.store->list(
+        {collection->id, *limit, work->after, box->box,
+         box->box && collection->box ? share_of(*collection->box, *box->box) : 0, *is_proven,
+         *std::move(where)});
+    if (!page) {
+      Problem problem = to_problem(page.error());
+      if (has_conditions && problem.status == 400) {
+        problem.detail += "; other parameters:";
+        for (const std::string_view known : kItemParameters) {
+          problem.detail.append(" ").append(known);
+        }
+      }
+      return to_response(problem);
+    }
+    work->page = *std::move(page);
+  }
+  return page_of(std::move(work), request.is_cancelled);
+}
+
+}  // namespace watertight::server

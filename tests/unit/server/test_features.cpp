@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// OGC API Features as map programs use it. The names of abstract tests are those of OGC 17-069r4
+// (part 1) and 18-058r1 (part 2).
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+#include <set>
+
+#include "server/features/links.h"
+#include "tests/unit/server/routes_fixture.h"
+
+namespace watertight {
+namespace {
+
+using Catch::Matchers::WithinAbs;
+using samples::header_of;
+using samples::Json;
+using samples::kTwo;
+using samples::problem_of;
+using Fixture = samples::RoutesFixture;
+
+constexpr double kFewMetres = 5e-5;  // of degrees
+
+/// Two buildings at the origin of the Dutch grid.
+std::string amersfoort() {
+  std::string text = kTwo;
+  text.replace(text.find("100.0,200.0"), 11, "155000,463000");
+  return text;
+}
+
+std::string uri(const std::string& name) { return "http://www.opengis.net/def/crs/" + name; }
+
+class City : public Fixture {
+ public:
+  City() { REQUIRE(post("/collections/town/items", amersfoort()).status == 201); }
+  Json page(const std::string& query, const std::vector<server::HeaderField>& headers = {}) const {
+    const server::Response response = get("/collections/town/items" + query, headers);
+    INFO(response.body);
+    REQUIRE(response.status == 200);
+    return Json::parse(response.body);
+  }
+};
+
+TEST_CASE_METHOD(City, "items are GeoJSON in CRS84h, with attributes as properties") {
+  const server::Response response =
+      get("/collections/town/items", {{"accept", "application/geo+json"}});
+  CHECK(response.content_type == "application/geo+json");
+  CHECK(*header_of(response, "Content-Crs") == "<" + uri("OGC/0/CRS84h") + ">");
+  const Json json = Json::parse(response.body);
+  CHECK(json["type"] == "FeatureCollection");
+  CHECK(json["numberMatched"] == 2);
+  CHECK(json["numberReturned"] == 2);
+  const Json& feature = json["features"][0];
+  CHECK(feature["type"] == "Feature");
+  CHECK(feature["properties"]["height"] == 2.5);
+  CHECK(feature["properties"]["wt_type"] == "Building");
+  CHECK(feature["properties"]["wt_proven"] == true);
+  CHECK(feature["properties"]["wt_solids"] == 1);
+  CHECK(feature["geometry"]["type"] == "MultiPolygon");
+  CHECK(feature["geometry"]["coordinates"].size() == 6);
+  const Json& position = feature["geometry"]["coordinates"][0][0][0];
+  REQUIRE(position.size() == 3);
+  CHECK_THAT(position[0].get<double>(), WithinAbs(5.387206, kFewMetres));
+  CHECK_THAT(position[1].get<double>(), WithinAbs(52.155174, kFewMetres));
+  CHECK(position[2] == 0);
+  CHECK(feature["bbox"].size() == 6);
+  CHECK(feature["bbox"][5] == 2.5);
+}
+
+TEST_CASE_METHOD(City, "items come in each CRS of the collection, the stored one exactly") {
+  const Json collection = Json::parse(get("/collections/town").body);
+  for (const Json& crs : collection["crs"]) {
+    INFO(crs);
+    const std::string query = "?crs=" + crs.get<std::string>();
+    const server::Response response = get("/collections/town/items" + query);
+    REQUIRE(response.status == 200);
+    CHECK(*header_of(response, "Content-Crs") == "<" + crs.get<std::string>() + ">");
+    CHECK(*header_of(get("/collections/town/items/a" + query + "&f=geojson"), "Content-Crs") ==
+          "<" + crs.get<std::string>() + ">");
+  }
+  const Json stored = page("?crs=" + uri("EPSG/0/7415"));
+  CHECK(stored["features"][0]["geometry"]["coordinates"][1][0] ==
+        Json::parse("[[155000,463000,2.5],[155001,463000,2.5],[155001,463001,2.5],"
+                    "[155000,463001,2.5],[155000,463000,2.5]]"));
+  CHECK(page("?crs=https://www.opengis.net/def/crs/EPSG/0/7415") !=
+        page(""));  // both schemes name the same systems
+  const Json mercator = page("?crs=" + uri("EPSG/0/3857"));
+  CHECK_THAT(mercator["features"][0]["bbox"][0].get<double>(), WithinAbs(599701, 10));
+  for (const char* wrong : {"EPSG/0/25833", "", "OGC/1.3/CRS83"}) {
+    CHECK(get("/collections/town/items?crs=" + uri(wrong)).status == 400);
+  }
+  CHECK(get("/collections/town/items/a?f=obj&crs=" + uri("EPSG/0/7415")).status == 400);
+}
+
+TEST_CASE_METHOD(City, "bbox is in CRS84 unless it names another CRS") {
+  const auto found = [&](const std::string& query) {
+    return page("?bbox=" + query)["numberReturned"].get<int>();
+  };
+  CHECK(found("5.38,52.15,5.39,52.16") == 2);
+  CHECK(found("-180,-90,180,90") == 2);
+  CHECK(found("-180,-90,-100,180,90,100") == 2);
+  CHECK(found("-180,-90,3,180,90,100") == 0);
+  CHECK(found("5.38,52.15,1,5.39,52.16,9") == 2);
+  CHECK(found("5.38721,52.15,5.39,52.16") == 2);  // cuts the buildings
+  CHECK(found("5.3873,52.15,5.39,52.16") == 0);   // begins beside them
+  CHECK(found("4,50,5,51") == 0);
+  CHECK(found("170,50,6,53") == 2);  // across the meridian of 180 degrees
+  CHECK(found("170,50,-170,53") == 0);
+  CHECK(found("5.38,52.15,5.39,52.16&bbox-crs=" + uri("OGC/1.3/CRS84")) == 2);
+  CHECK(found("599000,6810000,600500,6850000&bbox-crs=" + uri("EPSG/0/3857")) == 2);
+  CHECK(found("155000,463000,155001,463001&bbox-crs=" + uri("EPSG/0/7415")) == 2);
+  CHECK(found("155002,463000,155003,463001&bbox-crs=" + uri("EPSG/0/7415")) == 0);
+  CHECK(get("/collections/town/items?bbox=6,50,5,53&bbox-crs=" + uri("EPSG/0/7415")).status == 400);
+  CHECK(page("?datetime=2026-01-01T00:00:00Z/..")["numberReturned"] == 2);
+  CHECK(get("/collections/town/items?datetime=today").status == 400);
+}
+
+TEST_CASE_METHOD(Fixture, "coordinates without a CRS are only given under its name") {
+  std::string text = kTwo;
+  const std::size_t begin = text.find(R"("metadata")");
+  text.erase(begin, text.find(R"("CityObjects")") - begin);
+  REQUIRE(post("/collections/town/items", text).status == 201);
+  const std::string nil = "http://www.opengis.net/def/nil/OGC/0/unknown";
+  const Json json = Json::parse(get("/collections/town/items").body);
+  CHECK(json["features"][0]["geometry"].is_null());
+  CHECK(json["features"][0]["properties"]["wt_no_geometry"] == "the collection states no CRS");
+  CHECK(Json::parse(get("/collections/town/items?crs=" + nil).body)["features"][0]["bbox"] ==
+        Json::parse("[100,200,0,101,201,2.5]"));
+  CHECK(get("/collections/town/items?bbox=0,0,1,1").status == 400);
+  CHECK(Json::parse(get("/collections/town/items?bbox=100,200,101,201&bbox-crs=" + nil)
+                        .body)["numberReturned"] == 2);
+  const Json collection = Json::parse(get("/collections/town").body);
+  CHECK(collection["crs"] == Json::array({nil}));
+  CHECK_FALSE(collection.contains("extent"));
+  CHECK(collection["storageBbox"].size() == 6);
+}
+
+TEST_CASE_METHOD(Fixture, "what is not proven is shown as it came") {
+  const std::string open = samples::sequence({samples::feature("open", samples::kOpenFacets)});
+  REQUIRE(post("/collections/town/items?invalid=keep", open).status == 201);
+  const Json json = Json::parse(get("/collections/town/items").body);
+  CHECK(json["features"][0]["geometry"]["coordinates"].size() == 5);
+  CHECK(json["features"][0]["properties"]["wt_proven"] == false);
+  CHECK(json["features"][0]["properties"]["wt_unproven_solids"] == 1);
+}
+
+TEST_CASE_METHOD(City, "an item as GeoJSON is what lists have of it, with a tag of its own") {
+  const server::Response item =
+      get("/collections/town/items/a", {{"accept", "application/geo+json"}});
+  CHECK(item.content_type == "application/geo+json");
+  const Json listed = page("")["features"];
+  CHECK(std::find(listed.begin(), listed.end(), Json::parse(item.body)) != listed.end());
+  const std::string etag = *header_of(item, "ETag");
+  CHECK(get("/collections/town/items/a?f=geojson", {{"if-none-match", etag}}).status == 304);
+  CHECK(*header_of(get("/collections/town/items/a?f=geojson&lod=1"), "ETag") != etag);
+  CHECK(*header_of(get("/collections/town/items/a"), "ETag") != etag);
+  CHECK(get("/collections/town/items/a").content_type == "application/city+json");
+  CHECK(page("?lod=1")["features"][0]["geometry"].is_null());
+  CHECK(page("?lod=2.2")["features"][0]["geometry"]["coordinates"].size() == 6);
+}
+
+TEST_CASE_METHOD(City, "a summary has the facts without a look into the features") {
+  const std::size_t before = store.gets;
+  const Json json = page("?f=summary");
+  CHECK(store.gets == before);
+  CHECK(json["features"][0]["geometry"].is_null());
+  CHECK(json["features"][0]["properties"]["proven"] == true);
+  CHECK(json["features"][0]["bbox"] == Json::parse("[155000,463000,0,155001,463001,2.5]"));
+}
+
+TEST_CASE_METHOD(City, "links are absolute, by the request or by what a proxy says of it") {
+  const auto start = [&](std::vector<server::HeaderField> headers) {
+    const Json landing = Json::parse(get("/", std::move(headers)).body);
+    std::string href = landing["links"][0]["href"];
+    return href.substr(0, href.size() - 1);
+  };
+  CHECK(start({{"host", "example.org:8080"}}) == "http://example.org:8080");
+  CHECK(start({{"host", "[::1]:80"}}) == "http://[::1]:80");
+  CHECK(start({{"host", "inner"}, {"x-forwarded-proto", "https"}, {"x-forwarded-host", "a.org"}}) ==
+        "https://a.org");
+  CHECK(start({{"host", "inner"}, {"x-forwarded-prefix", "/solids/"}}) == "http://inner/solids");
+  CHECK(start({{"host", "inner"},
+               {"forwarded", "for=1.2.3.4; Proto=https; host=\"b.org:99\", for=5.6.7.8"}}) ==
+        "https://b.org:99");
+  CHECK(start({}).empty());
+  for (const char* hostile : {"a\"b", "a/b", "a b", "a<script>", ""}) {
+    CHECK(start({{"host", hostile}}).empty());
+    CHECK(start({{"host", "h"}, {"x-forwarded-host", hostile}}) == "http://h");
+    CHECK(start({{"host", "h"}, {"x-forwarded-proto", hostile}}) == "http://h");
+  }
+  CHECK(start({{"host", "h"}, {"x-forwarded-prefix", "//evil.org\""}}) == "http://h");
+  const Json page = this->page("?limit=1", {{"host", "example.org"}});
+  std::set<std::string> relations;
+  for (const Json& link : page["links"]) {
+    relations.insert(link["rel"]);
+    CHECK(link["href"].get<std::string>().starts_with("http://example.org/collections/town"));
+    CHECK(get(link["href"]).status == 200);
+  }
+  CHECK(relations == std::set<std::string>{"self", "next", "collection"});
+}
+
+TEST_CASE("the address of the service can be stated") {
+  Fixture fixture;
+  server::Service service{&fixture.store, nullptr, {}};
+  service.options.base_url = "https://example.org/solids";
+  const server::Response landing =
+      server::respond(service, {"GET", "/", {{"host", "inner"}, {"x-forwarded-host", "b.org"}}, ""},
+                      [] { return false; });
+  CHECK(Json::parse(landing.body)["links"][0]["href"] == "https://example.org/solids/");
+  CHECK(server::check_base_url("https://example.org/solids"));
+  CHECK(server::check_base_url("http://[::1]:80"));
+  for (const char* wrong :
+       {"", "example.org", "ftp://a", "http://", "http://a?b", "http://a/\"b"}) {
+    INFO(wrong);
+    CHECK_FALSE(server::check_base_url(wrong));
+  }
+}
+
+// Abstract tests of part 1, Core: /conf/core/root-op, conformance-op, fc-md-op, sfc-md-op.
+TEST_CASE_METHOD(City,
+                 "landing page, conformance and collections have what OGC API Features asks") {
+  const Json landing = Json::parse(get("/").body);
+  std::set<std::string> relations;
+  for (const Json& link : landing["links"]) relations.insert(link["rel"]);
+  for (const char* needed : {"self", "service-desc", "conformance", "data"}) {
+    INFO(needed);
+    CHECK(relations.contains(needed));
+  }
+  const Json classes = Json::parse(get("/conformance").body)["conformsTo"];
+  for (const char* name : {"ogcapi-features-1/1.0/conf/core", "ogcapi-features-1/1.0/conf/geojson",
+                           "ogcapi-features-1/1.0/conf/oas30", "ogcapi-features-2/1.0/conf/crs"}) {
+    const std::string wanted = std::string("http://www.opengis.net/spec/") + name;
+    CHECK(std::count(classes.begin(), classes.end(), wanted) == 1);
+  }
+  const Json collections = Json::parse(get("/collections").body);
+  REQUIRE(collections["collections"].size() == 1);
+  const Json collection = collections["collections"][0];
+  CHECK(collection == Json::parse(get("/collections/town").body));
+  CHECK(collection["crs"][0] == uri("OGC/0/CRS84h"));
+  CHECK(std::count(collection["crs"].begin(), collection["crs"].end(), collection["storageCrs"]) ==
+        1);
+  const Json extent = collection["extent"]["spatial"];
+  CHECK(extent["crs"] == uri("OGC/0/CRS84h"));
+  CHECK_THAT(extent["bbox"][0][0].get<double>(), WithinAbs(5.387206, kFewMetres));
+  CHECK(std::any_of(collection["links"].begin(), collection["links"].end(), [](const Json& link) {
+    return link["rel"] == "items" && link["type"] == "application/geo+json";
+  }));
+  // /conf/core/query-param-unknown, query-param-invalid
+  CHECK(problem_of(get("/collections/town/items?limit=no"))["status"] == 400);
+  CHECK(problem_of(get("/conformance?no=1"))["status"] == 400);
+  CHECK(get("/collections/none/items").status == 404);
+  CHECK(get("/conformance", {{"accept", "image/png"}}).status == 406);
+}
+
+}  // namespace
+}  // namespace watertight

@@ -131,6 +131,7 @@ struct ServeCommand {
   std::string listen = "127.0.0.1:8080";
   std::string probes;    // "" for no address of their own
   std::string base_url;  // the start of links, "" for what requests say
+  std::string cors;      // whose web pages may read, "" for none but the service's own
   std::optional<std::size_t> connections_per_address;
   bool requires_preconditions = false;
 };

@@ -17,6 +17,7 @@
 #include "cli/terminal/printable.h"
 #include "pipeline/export.h"
 #include "pipeline/stored/attributes.h"
+#include "server/features/cors.h"
 #include "server/features/links.h"
 #include "server/serve.h"
 
@@ -72,6 +73,13 @@ Exit run(const ServeCommand& command) {
     }
     options.base_url = command.base_url;
     while (options.base_url.ends_with('/')) options.base_url.pop_back();
+  }
+  if (!command.cors.empty()) {
+    if (const Status checked = server::check_origin(command.cors); !checked) {
+      complain("--cors", checked.error());
+      return Exit::error;
+    }
+    options.cors_origin = command.cors;
   }
   limit_addresses(command, options.server);
   options.requires_preconditions = command.requires_preconditions;

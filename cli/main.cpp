@@ -289,6 +289,8 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   sub->add_option("--connections-per-address", command.connections_per_address,
                   "the most connections of one client's address; 0 for no limit (default: 128, and "
                   "no limit on a loopback address, where a proxy may speak for many)");
+  sub->add_option("--cors", command.cors,
+                  "the origin whose web pages may read answers, or * for all; none without it");
   sub->add_option("--base-url", command.base_url,
                   "the address under which clients reach the service, for links; without it, that "
                   "of each request");

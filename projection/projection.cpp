@@ -23,7 +23,8 @@ using Object = std::unique_ptr<PJ, Destroy>;
 constexpr int kPointsOfAnEdge = 21;  // where the edges of a rectangle are followed
 
 const char* name_of(System system) {
-  return system == System::longitude_latitude ? "OGC:CRS84" : "EPSG:3857";
+  // With EPSG's name PROJ takes EPSG's operations, as map programs do. Axes are put in order below.
+  return system == System::longitude_latitude ? "EPSG:4326" : "EPSG:3857";
 }
 
 void be_silent(void* /*user*/, int /*level*/, const char* /*message*/) {}

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/container.h"
+#include "server/features/cors.h"
 #include "server/handlers.h"
 
 namespace watertight::server {
@@ -151,7 +152,9 @@ Lane lane_of(const Request& request, std::uint64_t body_bytes) {
   return Lane::quick;
 }
 
-Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
+namespace {
+
+Response routed(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
   // The service as a whole (RFC 9110, section 9.3.7).
   if (request.method == "OPTIONS" && request.target == "*") {
     return Response{204, "", "", {{"Allow", "GET, HEAD, POST, PUT, PATCH, DELETE, OPTIONS"}}};
@@ -165,6 +168,13 @@ Response respond(const Service& service, const Request& request, const CancelPol
     return route.handler({service, request, *target, is_cancelled});
   }
   return unrouted(request, *target);
+}
+
+}  // namespace
+
+Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
+  return with_leave_to_read(service.options.cors_origin, request,
+                            routed(service, request, is_cancelled));
 }
 
 Application make_application(const Service& service) {

@@ -188,6 +188,7 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   service.options.limits = options.limits;
   service.options.requires_preconditions = options.requires_preconditions;
   service.options.base_url = options.base_url;
+  service.options.cors_origin = options.cors_origin;
   const auto logger = make_logger();
   const LogLine log = [logger](const std::string& line) { logger->info(line); };
   std::unique_ptr<HttpServer> probes;

@@ -25,6 +25,7 @@ struct ServeOptions {
   /// own.
   std::optional<ServerOptions> probes = {};
   std::string base_url;                        // RouteOptions::base_url
+  std::string cors_origin;                     // RouteOptions::cors_origin
   bool requires_preconditions = false;         // with every write of features
   std::uint64_t document_memory = 4ULL << 30;  // of the documents that are read whole, bytes
   std::size_t cache_bytes = 64ULL << 20;       // of the answers for items that are kept

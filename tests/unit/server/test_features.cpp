@@ -7,6 +7,7 @@
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
 #include <set>
 
+#include "server/features/cors.h"
 #include "server/features/links.h"
 #include "tests/unit/server/routes_fixture.h"
 
@@ -214,6 +215,43 @@ TEST_CASE("the address of the service can be stated") {
        {"", "example.org", "ftp://a", "http://", "http://a?b", "http://a/\"b"}) {
     INFO(wrong);
     CHECK_FALSE(server::check_base_url(wrong));
+  }
+}
+
+TEST_CASE("pages of an origin that is named may read, and no others") {
+  Fixture fixture;
+  REQUIRE(fixture.post("/collections/town/items", kTwo).status == 201);
+  const auto send = [&](const std::string& cors, const std::string& method,
+                        const std::string& target, const std::string& origin) {
+    server::Service service{&fixture.store, nullptr, {}};
+    service.options.cors_origin = cors;
+    const CancelPoll never = [] { return false; };
+    std::vector<server::HeaderField> fields;
+    if (!origin.empty()) fields.push_back({"origin", origin});
+    server::Response response = server::respond(service, {method, target, fields, ""}, never);
+    while (response.further) response = std::shared_ptr(response.further)->make(never);
+    return response;
+  };
+  const std::string maps = "https://maps.example.org";
+  for (const char* target :
+       {"/", "/collections/town/items", "/collections/town/items/a", "/none"}) {
+    INFO(target);
+    const server::Response any = send("*", "GET", target, maps);
+    REQUIRE(header_of(any, "Access-Control-Allow-Origin"));
+    CHECK(*header_of(any, "Access-Control-Allow-Origin") == "*");
+    CHECK(*header_of(send(maps, "GET", target, "http://evil.org"), "Access-Control-Allow-Origin") ==
+          maps);
+    CHECK_FALSE(header_of(send("", "GET", target, maps), "Access-Control-Allow-Origin"));
+    CHECK_FALSE(header_of(send("*", "GET", target, ""), "Access-Control-Allow-Origin"));
+  }
+  CHECK(header_of(send("*", "OPTIONS", "/collections", maps), "Access-Control-Allow-Methods"));
+  CHECK_FALSE(header_of(send("*", "DELETE", "/collections/town/items/a", maps),
+                        "Access-Control-Allow-Origin"));
+  CHECK(server::check_origin("*"));
+  CHECK(server::check_origin("http://localhost:3000"));
+  for (const char* wrong : {"", "**", "maps.example.org", "https://a/", "https://a/b", "null"}) {
+    INFO(wrong);
+    CHECK_FALSE(server::check_origin(wrong));
   }
 }
 

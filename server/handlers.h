@@ -16,6 +16,8 @@
 namespace watertight::server {
 
 inline constexpr std::string_view kJson = "application/json";
+inline constexpr std::string_view kHtml = "text/html";
+inline constexpr std::string_view kHtmlPage = "text/html; charset=utf-8";  // as answers name it
 inline constexpr std::string_view kGeoJson = "application/geo+json";
 inline constexpr std::string_view kCityJson = "application/city+json";
 inline constexpr std::string_view kCityJsonSeq = "application/city+json-seq";

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "server/features/links.h"
+#include "server/features/pages.h"
 #include "server/features/systems.h"
 #include "server/items/preconditions.h"
 #include "server/json_answers.h"
@@ -105,7 +106,8 @@ std::optional<Response> unless_change_is_wanted(const RoutedRequest& request) {
 }
 
 Response get_collections(const RoutedRequest& request) {
-  if (auto refusal = json_only(request)) return *std::move(refusal);
+  const auto form = answer_form(request);
+  if (!form) return refuse_forms();
   // Clients such as GDAL expect all collections at once.
   const auto limit = limit_of_request(request.target, request.service.options,
                                       request.service.options.largest_page);
@@ -129,16 +131,19 @@ Response get_collections(const RoutedRequest& request) {
   for (const store::StoredCollection& collection : page->collections) {
     json["collections"].push_back(collection_json(collection, base));
   }
-  return json_response(json);
+  return *form == AnswerForm::html ? html_response(collections_page(json)) : json_response(json);
 }
 
 Response get_collection(const RoutedRequest& request) {
-  if (auto refusal = json_only(request)) return *std::move(refusal);
+  const auto form = answer_form(request);
+  if (!form) return refuse_forms();
   const auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  const std::string etag = etag_of_state(collection->state, "json");
+  const bool is_html = *form == AnswerForm::html;
+  const std::string etag = etag_of_state(collection->state, is_html ? "html" : "json");
   if (auto unneeded = unless_needed(request.request, etag)) return *std::move(unneeded);
-  Response response = json_response(collection_json(*collection, base_url(request)));
+  const Json json = collection_json(*collection, base_url(request));
+  Response response = is_html ? html_response(collection_page(json)) : json_response(json);
   response.headers.push_back({"ETag", etag});
   return response;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "server/features/links.h"
+#include "server/features/pages.h"
 #include "server/json_answers.h"
 
 namespace watertight::server {
@@ -13,46 +14,15 @@ namespace {
 
 constexpr std::string_view kUnknownCrs = "http://www.opengis.net/def/nil/OGC/0/unknown";
 
-constexpr std::string_view kHtml = "text/html";
 constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
 constexpr std::string_view kSpecifications = "http://www.opengis.net/spec/";
 constexpr std::string_view kConformance[] = {
-    "ogcapi-common-1/1.0/conf/core",    "ogcapi-common-2/1.0/conf/collections",
-    "ogcapi-features-1/1.0/conf/core",  "ogcapi-features-1/1.0/conf/geojson",
-    "ogcapi-features-1/1.0/conf/oas30", "ogcapi-features-2/1.0/conf/crs"};
+    "ogcapi-common-1/1.0/conf/core",   "ogcapi-common-2/1.0/conf/collections",
+    "ogcapi-features-1/1.0/conf/core", "ogcapi-features-1/1.0/conf/geojson",
+    "ogcapi-features-1/1.0/conf/html", "ogcapi-features-1/1.0/conf/oas30",
+    "ogcapi-features-2/1.0/conf/crs"};
 constexpr std::string_view kTitle = "Watertight";
 constexpr std::string_view kDescription = "Validates, stores and compresses 3D solids";
-
-/// The landing page in HTML. It has the links of the page in JSON, and loads nothing from
-/// elsewhere.
-std::string landing_html(const Json& links) {
-  std::string html =
-      "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta "
-      "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-      "'unsafe-inline'\">\n<title>";
-  html.append(kTitle).append("</title>\n<style>body{font:16px/1.5 sans-serif;margin:3em auto;");
-  html.append("max-width:40em;padding:0 1em}</style>\n<h1>").append(kTitle).append("</h1>\n<p>");
-  html.append(kDescription).append(".</p>\n<ul>\n");
-  for (const Json& item : links) {
-    const auto href = item["href"].get<std::string>();
-    html.append("<li><a href=\"").append(href).append("\"><code>").append(href);
-    html.append("</code></a> ").append(item["title"].get<std::string>()).append("</li>\n");
-  }
-  return html.append("</ul>\n</html>\n");
-}
-
-/// The type of the landing page by `f` or the Accept header; nullopt when the client wants neither
-/// JSON nor HTML.
-std::optional<std::string_view> landing_type(const RoutedRequest& request) {
-  if (const std::string* format = request.target.parameter("f")) {
-    if (*format == "json") return kJson;
-    if (*format == "html") return kHtml;
-    return std::nullopt;
-  }
-  const auto offer = negotiate(request.request.header("accept"), {kJson, kHtml});
-  if (!offer) return std::nullopt;
-  return *offer == 0 ? std::string_view(kJson) : kHtml;
-}
 
 }  // namespace
 
@@ -80,11 +50,8 @@ std::string item_path(std::string_view collection, std::string_view item) {
 }
 
 Response get_landing(const RoutedRequest& request) {
-  const auto type = landing_type(request);
-  if (!type) {
-    return refuse(406, "not-acceptable",
-                  "this resource is available as application/json and text/html");
-  }
+  const auto form = answer_form(request);
+  if (!form) return refuse_forms();
   const std::string base = base_url(request);
   const Json links = Json::array(
       {link(base + "/", "self", kJson, "this page"),
@@ -94,17 +61,19 @@ Response get_landing(const RoutedRequest& request) {
        link(base + "/validate", "validate", kJson, "POST a document to validate it"),
        link(base + "/healthz", "status", kJson, "state of the process"),
        link(base + "/readyz", "status", kJson, "state of the database")});
-  if (*type == kHtml) return Response{200, "text/html; charset=utf-8", landing_html(links), {}};
-  return json_response({{"title", kTitle}, {"description", kDescription}, {"links", links}});
+  const Json json{{"title", kTitle}, {"description", kDescription}, {"links", links}};
+  return *form == AnswerForm::html ? html_response(landing_page(json)) : json_response(json);
 }
 
 Response get_conformance(const RoutedRequest& request) {
-  if (auto refusal = json_only(request)) return *std::move(refusal);
+  const auto form = answer_form(request);
+  if (!form) return refuse_forms();
   Json classes = Json::array();
   for (const std::string_view name : kConformance) {
     classes.push_back(std::string(kSpecifications).append(name));
   }
-  return json_response({{"conformsTo", std::move(classes)}});
+  const Json json{{"conformsTo", std::move(classes)}};
+  return *form == AnswerForm::html ? html_response(conformance_page(json)) : json_response(json);
 }
 
 Response get_api(const RoutedRequest& request) {

@@ -106,7 +106,6 @@ Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
   return Done{};
 }
 
-constexpr std::string_view kHtml = "text/html";
 
 std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::TextSink sink,
                                                    report::ReportHead head) {

@@ -2,6 +2,7 @@
 //
 // The handler of lists of features: pages of GeoJSON, or of facts alone.
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "pipeline/stored/attributes.h"
 #include "server/features/feature_text.h"
 #include "server/features/links.h"
+#include "server/features/pages.h"
 #include "server/items/preconditions.h"
 #include "server/items/representation_cache.h"
 #include "server/json_answers.h"
@@ -78,7 +80,7 @@ Json summary_json(const std::string& base, const std::string& collection,
   return json;
 }
 
-/// The form of a page: GeoJSON under one of two types, or the facts alone.
+/// The form of a page: GeoJSON under one of two types, the facts alone, or HTML.
 struct PageType {
   bool is_summary = false;
   std::string_view type;
@@ -89,11 +91,13 @@ std::optional<PageType> page_type(const RoutedRequest& request) {
     if (*format == "geojson") return PageType{false, kGeoJson};
     if (*format == "json") return PageType{false, kJson};
     if (*format == "summary") return PageType{true, kJson};
+    if (*format == "html") return PageType{false, kHtml};
     return std::nullopt;
   }
-  const auto offer = negotiate(request.request.header("accept"), {kGeoJson, kJson});
+  const auto offer = negotiate(request.request.header("accept"), {kGeoJson, kJson, kHtml});
   if (!offer) return std::nullopt;
-  return PageType{false, *offer == 0 ? kGeoJson : kJson};
+  constexpr std::array<std::string_view, 3> kTypes{kGeoJson, kJson, kHtml};
+  return PageType{false, kTypes[*offer]};
 }
 
 /// A page that was read from the database and is to be written, apart from the request, so that
@@ -152,6 +156,10 @@ Json page_head(const PageWork& work, const std::string& next, std::size_t return
 }
 
 Response page_response(const PageWork& work, Json head, const std::string& features) {
+  if (work.type.type == kHtml) {
+    head["features"] = Json::parse("[" + features + "]");
+    return html_response(items_page(work.collection, head));
+  }
   std::string body = head.dump(-1, ' ', false, Json::error_handler_t::replace);
   body.pop_back();
   body.append(R"(,"features":[)").append(features).append("]}\n");
@@ -239,8 +247,9 @@ Response get_items(const RoutedRequest& request) {
   const auto type = page_type(request);
   if (!type) {
     return refuse(406, "not-acceptable",
-                  "a list of items is available as application/geo+json (f=geojson) or "
-                  "application/json (f=json, or f=summary for facts without geometry)");
+                  "a list of items is available as application/geo+json (f=geojson), "
+                  "application/json (f=json, or f=summary for facts without geometry) or "
+                  "text/html (f=html)");
   }
   const auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));

@@ -9,6 +9,7 @@
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
 #include "server/features/feature_text.h"
+#include "server/features/pages.h"
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
 #include "server/items/ranges.h"
@@ -22,7 +23,8 @@ struct ItemFormat {
   std::string_view type;
 };
 
-constexpr std::array<ItemFormat, 8> kFormats{{{"cityjson", kCityJson},
+constexpr std::array<ItemFormat, 9> kFormats{{{"cityjson", kCityJson},
+                                              {"html", kHtml},
                                               {"geojson", kGeoJson},
                                               {"json", kJson},
                                               {"cityjsonseq", kCityJsonSeq},
@@ -105,6 +107,11 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
         FeatureWriter(item.form, item.service.options.limits).write(std::move(feature));
     return text ? Result<Bytes>(bytes_of(*text + "\n")) : Result<Bytes>(text.error());
   }
+  if (format == "html") {
+    const auto text = FeatureWriter({}, item.service.options.limits).write(std::move(feature));
+    if (!text) return text.error();
+    return bytes_of(item_page(item.collection, Json::parse(*text)));
+  }
   if (format == "blob") return blob_of(feature, item.solid, item.service.options.limits);
   if (format == "proof") {
     const auto encoded = pipeline::unpack(std::move(feature));
@@ -144,7 +151,8 @@ Response represented(StoredFeature feature, const ItemRequest& item) {
     if (body.error().code == ErrorCode::not_encodable) problem.status = 406;
     return to_response(problem);
   }
-  Response response{200, std::string(item.format.type), std::string(as_text(*body)), headers};
+  const std::string_view type = item.format.type == kHtml ? kHtmlPage : item.format.type;
+  Response response{200, std::string(type), std::string(as_text(*body)), headers};
   if (RepresentationCache* cache = item.service.cache) {
     cache->keep(item.key(version), std::make_shared<const Response>(response));
   }
@@ -189,7 +197,7 @@ Response get_item(const RoutedRequest& request) {
     return refuse(
         406, "not-acceptable",
         "an item is available as application/city+json (f=cityjson), application/json (f=json), "
-        "application/geo+json (f=geojson), "
+        "application/geo+json (f=geojson), text/html (f=html), "
         "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
         "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs "
         "and findings with f=proof");

@@ -255,6 +255,50 @@ TEST_CASE("pages of an origin that is named may read, and no others") {
   }
 }
 
+// Abstract tests of part 1, HTML: /conf/html/content, definition.
+TEST_CASE_METHOD(Fixture, "browsers get pages whose links lead on, with every text escaped") {
+  std::string text = kTwo;
+  const std::string hostile = "<script>alert(1)</script>&\\\"";
+  text.replace(text.find("\"height\":2.50"), 13, "\"<b>\":\"" + hostile + "\"");
+  REQUIRE(post("/collections/town/items", text).status == 201);
+  const std::string accept = "text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8";
+  std::set<std::string> seen;
+  std::vector<std::string> next{"/"};
+  while (!next.empty()) {
+    const std::string target = next.back();
+    next.pop_back();
+    if (!seen.insert(target).second) continue;
+    INFO(target);
+    const server::Response response = get(target, {{"accept", accept}});
+    REQUIRE(response.status == 200);
+    if (response.content_type != "text/html; charset=utf-8") continue;
+    CHECK(response.body.starts_with("<!doctype html>"));
+    CHECK(response.body.find("<script") == std::string::npos);
+    CHECK(response.body.find("<b>") == std::string::npos);
+    CHECK(response.body.find("default-src 'none'") != std::string::npos);
+    const std::string mark = "<a href=\"";
+    for (std::size_t at = response.body.find(mark); at != std::string::npos;
+         at = response.body.find(mark, at + 1)) {
+      const std::size_t begin = at + mark.size();
+      std::string href = response.body.substr(begin, response.body.find('"', begin) - begin);
+      for (std::size_t amp = href.find("&amp;"); amp != std::string::npos;
+           amp = href.find("&amp;")) {
+        href.erase(amp + 1, 4);
+      }
+      if (href.starts_with("..")) continue;  // leads back
+      if (href == "/validate" || href.ends_with("f=cityjsonseq")) continue;
+      next.push_back(href.starts_with("?") ? target.substr(0, target.find('?')) + href : href);
+    }
+  }
+  for (const char* needed : {"/collections", "/collections/town", "/collections/town/items",
+                             "/collections/town/items/a", "/collections/town/items/b?f=obj"}) {
+    INFO(needed);
+    CHECK(seen.contains(needed));
+  }
+  CHECK(get("/collections/town/items?f=html&limit=1").body.find("Next page") != std::string::npos);
+  CHECK(get("/collections?f=html&after=zz").body.find("no collection yet") != std::string::npos);
+}
+
 // Abstract tests of part 1, Core: /conf/core/root-op, conformance-op, fc-md-op, sfc-md-op.
 TEST_CASE_METHOD(City,
                  "landing page, conformance and collections have what OGC API Features asks") {

@@ -86,7 +86,7 @@ using Upkeep = std::function<Response(SolidStore&, const std::string&, const Can
 
 /// Work that touches all features of a collection, which can take minutes. One such work is done at
 /// a time, so that they leave threads to others.
-Response upkeep(const RoutedRequest& request, Upkeep work) {
+Response upkeep(const RoutedRequest& request, const Upkeep& work) {
   Response response;
   response.further = std::make_shared<const FurtherWork>(
       FurtherWork{Lane::computing, "upkeep",

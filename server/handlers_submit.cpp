@@ -106,7 +106,6 @@ Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
   return Done{};
 }
 
-
 std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::TextSink sink,
                                                    report::ReportHead head) {
   if (kind == 1) return report::geojson_report(std::move(sink), std::move(head));

@@ -27,7 +27,7 @@ struct RouteOptions {
   std::uint64_t default_page = 10;
   std::uint64_t largest_findings = 1000;  // the most findings of a report in an answer
   std::size_t longest_report = std::size_t{256} << 20U;  // of POST /validate, bytes
-  std::string base_url;  // the start of links; "": from the request (server/features/links.h)
+  std::string base_url;     // the start of links; "": from the request (server/features/links.h)
   std::string cors_origin;  // whose pages may read answers (server/features/cors.h); "": none
   bool requires_preconditions = false;  // on every write; without one it gets 428
 };

@@ -81,12 +81,28 @@ std::optional<int> levels_around_surfaces(std::string_view type) {
   return std::nullopt;
 }
 
-/// Adds geometries that refer to one list of positions.
+/// The place of a template: its positions times the matrix, moved by the anchor.
+struct TemplatePlace {
+  std::array<double, kMatrixSize> matrix{};  // row by row
+  Position anchor{};
+
+  Position apply(const Position& source) const {
+    Position placed = anchor;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double* row = &matrix[axis * 4];
+      placed[axis] += row[0] * source[0] + row[1] * source[1] + row[2] * source[2] + row[3];
+    }
+    return placed;
+  }
+};
+
+/// Adds geometries that refer to one list of positions, until there are kMostShownVertices.
 class ShapeBuilder {
  public:
-  /// All must outlive this object.
-  ShapeBuilder(const std::vector<Position>& vertices, CityShapes& shapes)
-      : vertices_(vertices), shapes_(shapes) {}
+  /// All must outlive this object. `count` is the number of vertices of rings so far.
+  ShapeBuilder(const std::vector<Position>& vertices, CityShapes& shapes, std::size_t& count,
+               const TemplatePlace* place = nullptr)
+      : vertices_(vertices), shapes_(shapes), count_(count), place_(place) {}
 
   void add(const std::string& type, const Json& boundaries) {
     if (const auto levels = levels_around_surfaces(type)) return add_surfaces(boundaries, *levels);
@@ -136,13 +152,17 @@ class ShapeBuilder {
              !std::isnan(vertices_[vertex.get<std::uint64_t>()][0]);
     };
     CityShapes::Ring ring;
-    if (!list.is_array() || list.size() < least || !std::all_of(list.begin(), list.end(), exists)) {
+    if (count_ > kMostShownVertices || !list.is_array() || list.size() < least ||
+        !std::all_of(list.begin(), list.end(), exists)) {
       return ring;
     }
+    count_ += list.size();
     for (const Json& vertex : list) {
       const auto index = vertex.get<std::uint64_t>();
       const auto [place, is_new] = used_.try_emplace(index, shapes_.positions.size());
-      if (is_new) shapes_.positions.push_back(vertices_[index]);
+      if (is_new) {
+        shapes_.positions.push_back(place_ ? place_->apply(vertices_[index]) : vertices_[index]);
+      }
       ring.push_back(place->second);
     }
     return ring;
@@ -150,6 +170,8 @@ class ShapeBuilder {
 
   const std::vector<Position>& vertices_;
   CityShapes& shapes_;
+  std::size_t& count_;
+  const TemplatePlace* place_;
   std::unordered_map<std::uint64_t, std::size_t> used_;
 };
 
@@ -241,8 +263,8 @@ struct CityFeatureReader::Header {
   }
 
   std::vector<Levelled> geometries_of(const Json& object) const;
-  void add_instance(const Json& geometry, const std::vector<Position>& vertices,
-                    CityShapes& shapes) const;
+  void add_instance(const Json& geometry, const std::vector<Position>& vertices, CityShapes& shapes,
+                    std::size_t& count) const;
 };
 
 /// The geometries of a city object. An instance has the level of its template.
@@ -259,10 +281,10 @@ std::vector<Levelled> CityFeatureReader::Header::geometries_of(const Json& objec
   return geometries;
 }
 
-/// Places a template: its positions times the matrix, moved to the vertex of the instance.
+/// Places a template at the vertex of an instance.
 void CityFeatureReader::Header::add_instance(const Json& geometry,
                                              const std::vector<Position>& vertices,
-                                             CityShapes& shapes) const {
+                                             CityShapes& shapes, std::size_t& count) const {
   const Json* shape = template_of(geometry);
   const Json* anchors = find_member(geometry, "boundaries");
   const Json* matrix = find_member(geometry, "transformationMatrix");
@@ -273,21 +295,16 @@ void CityFeatureReader::Header::add_instance(const Json& geometry,
   }
   const auto anchor = (*anchors)[0].get<std::uint64_t>();
   if (anchor >= vertices.size() || std::isnan(vertices[anchor][0])) return;
-  std::array<double, kMatrixSize> m{};
-  for (std::size_t i = 0; i < kMatrixSize; ++i) m[i] = number_of((*matrix)[i]).value_or(0);
-  std::vector<Position> placed = template_vertices;
-  for (Position& position : placed) {
-    const Position source = position;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double* row = &m[axis * 4];
-      position[axis] = row[0] * source[0] + row[1] * source[1] + row[2] * source[2] + row[3] +
-                       vertices[anchor][axis];
-    }
+  TemplatePlace place;
+  place.anchor = vertices[anchor];
+  for (std::size_t i = 0; i < kMatrixSize; ++i) {
+    place.matrix[i] = number_of((*matrix)[i]).value_or(0);
   }
   const Json* boundaries = find_member(*shape, "boundaries");
   if (boundaries == nullptr) return;
   shapes.decimals.reset();
-  ShapeBuilder(placed, shapes).add(string_member(*shape, "type"), *boundaries);
+  ShapeBuilder(template_vertices, shapes, count, &place)
+      .add(string_member(*shape, "type"), *boundaries);
 }
 
 CityFeatureReader::CityFeatureReader(std::unique_ptr<Header> header) : header_(std::move(header)) {}
@@ -343,7 +360,8 @@ Result<CityFeature> CityFeatureReader::read(std::string_view feature, std::strin
       highest = std::max(highest, found.rank);
     }
   }
-  ShapeBuilder builder(vertices, read.shapes);
+  std::size_t count = 0;
+  ShapeBuilder builder(vertices, read.shapes, count);
   for (const Json& object : *objects) {
     const auto geometries = header_->geometries_of(object);
     double best = kNoLevel;
@@ -354,12 +372,14 @@ Result<CityFeature> CityFeatureReader::read(std::string_view feature, std::strin
       if (lod ? level != *lod : rank != best) continue;
       const std::string type = string_member(*geometry, "type");
       if (type == "GeometryInstance") {
-        header_->add_instance(*geometry, vertices, read.shapes);
+        header_->add_instance(*geometry, vertices, read.shapes, count);
       } else if (const Json* boundaries = find_member(*geometry, "boundaries")) {
         builder.add(type, *boundaries);
       }
     }
   }
+  read.is_too_large = count > kMostShownVertices;
+  if (read.is_too_large) read.shapes = {};
   return read;
 }
 

@@ -32,9 +32,14 @@ struct CityShapes {
   std::vector<std::size_t> points;
 };
 
+/// The most vertices of all rings of a feature, counted as often as rings name them: some 100 MB of
+/// GeoJSON. A template of a megabyte can be placed in a hundred bytes.
+inline constexpr std::size_t kMostShownVertices = 2'000'000;
+
 /// A feature with its properties.
 struct CityFeature {
   CityShapes shapes;
+  bool is_too_large = false;  // more than kMostShownVertices: there are no shapes
   /// Names and values (JSON texts): the attributes of the top-level object, then those of other
   /// objects which it does not have and in which no two of them differ.
   std::vector<std::pair<std::string, std::string>> attributes;

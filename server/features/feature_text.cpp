@@ -59,6 +59,12 @@ Error damaged(const Error& error) {
 
 }  // namespace
 
+bool is_large(const StoredFeature& feature) {
+  std::size_t bytes = feature.skeleton.bytes.size() + feature.page.size();
+  for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
+  return bytes > kSmallBody;
+}
+
 Result<FeatureForm> FeatureForm::of_request(const Target& target, std::uint32_t srid) {
   auto system = system_of_request(target, "crs", srid);
   if (!system) return std::move(system).error();
@@ -110,7 +116,11 @@ Result<std::string> FeatureWriter::write(StoredFeature stored) {
   if (!document) return damaged(document.error());
   auto feature = read(*document, id);
   if (!feature) return damaged(feature.error());
-  if (const Status brought = bring_into(form_.system, srid, feature->shapes); !brought) {
+  const Status brought =
+      feature->is_too_large
+          ? Error{ErrorCode::limit_exceeded, "the geometry has more vertices than are shown"}
+          : bring_into(form_.system, srid, feature->shapes);
+  if (!brought) {
     feature->shapes = {};
     properties.emplace_back(std::string(kOwnProperty) + "no_geometry",
                             json_string(brought.error().message));

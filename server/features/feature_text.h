@@ -25,6 +25,9 @@ struct FeatureForm {
   std::string name() const;
 };
 
+/// Whether it takes more than a moment to decode a feature.
+bool is_large(const StoredFeature& feature);
+
 /// The names of the properties that the service adds to the attributes of a feature begin so.
 inline constexpr std::string_view kOwnProperty = "wt_";
 

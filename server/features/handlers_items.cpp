@@ -185,60 +185,75 @@ RepresentationCache::Answer kept_text(const PageWork& work, const store::Feature
   return work.service.cache == nullptr ? nullptr : work.service.cache->find(work.key(feature));
 }
 
-/// Reads the feature and writes its text, "" if it was removed meanwhile.
-Result<std::string> text_of(const PageWork& work, const store::FeatureSummary& feature,
-                            FeatureWriter& writer) {
-  if (const auto kept = kept_text(work, feature)) return kept->body;
+/// Reads the feature and writes its text, "" if it was removed meanwhile. Nothing for a large
+/// feature in a lane other than the one for long work.
+Result<std::optional<std::string>> text_of(const PageWork& work,
+                                           const store::FeatureSummary& feature,
+                                           FeatureWriter& writer, Lane lane) {
+  if (const auto kept = kept_text(work, feature)) return std::optional(kept->body);
   auto stored = work.service.store->get(work.collection, feature.id);
   if (!stored) {
-    if (stored.error().code == ErrorCode::not_found) return std::string();
+    if (stored.error().code == ErrorCode::not_found) return std::optional(std::string());
     return std::move(stored).error();
   }
+  if (lane != Lane::computing && is_large(*stored)) return std::optional<std::string>();
   const bool is_same = stored->version == feature.version;
   auto text = writer.write(*std::move(stored));
-  if (text && is_same && work.service.cache != nullptr) {
+  if (!text) return std::move(text).error();
+  if (is_same && work.service.cache != nullptr) {
     work.service.cache->keep(work.key(feature),
                              std::make_shared<const Response>(Response{200, "", *text}));
   }
-  return text;
+  return std::optional(*std::move(text));
 }
 
-Response written_page(const PageWork& work, const CancelPoll& is_cancelled) {
-  FeatureWriter writer(work.form, work.service.options.limits);
+Response page_in_lane(const std::shared_ptr<const PageWork>& work, Lane lane);
+
+/// Writes the page, or leaves it to another lane when a large feature is on it.
+Response written_page(const std::shared_ptr<const PageWork>& work, Lane lane,
+                      const CancelPoll& is_cancelled) {
+  FeatureWriter writer(work->form, work->service.options.limits);
   std::string features;
   std::size_t returned = 0;
-  std::string next = work.page.next;
-  for (const store::FeatureSummary& feature : work.page.features) {
+  std::string next = work->page.next;
+  for (const store::FeatureSummary& feature : work->page.features) {
     if (is_cancelled && is_cancelled()) {
       return to_response(to_problem({ErrorCode::cancelled, "the page was not finished in time"}));
     }
-    const auto text = text_of(work, feature, writer);
+    const auto text = text_of(*work, feature, writer, lane);
     if (!text) return to_response(to_problem(text.error()));
-    if (text->empty()) continue;
+    if (!*text) return page_in_lane(work, Lane::computing);
+    if ((*text)->empty()) continue;
     if (!features.empty()) features += ',';
-    features += *text;
+    features += **text;
     ++returned;
-    if (features.size() > kLongestPage && &feature != &work.page.features.back()) {
+    if (features.size() > kLongestPage && &feature != &work->page.features.back()) {
       next = feature.id;
       break;
     }
   }
-  return page_response(work, page_head(work, next, returned), features);
+  return page_response(*work, page_head(*work, next, returned), features);
 }
 
-Response page_of(std::shared_ptr<const PageWork> work, const CancelPoll& is_cancelled) {
+Response page_in_lane(const std::shared_ptr<const PageWork>& work, Lane lane) {
+  Response response;
+  response.further = std::make_shared<const FurtherWork>(
+      FurtherWork{lane, {}, [work, lane](const CancelPoll& is_unwanted) {
+                    return written_page(work, lane, is_unwanted);
+                  }});
+  return response;
+}
+
+Response page_of(const std::shared_ptr<const PageWork>& work, const CancelPoll& is_cancelled) {
   if (work->type.is_summary) return summary_page(*work);
   const auto& features = work->page.features;
   const auto missing = static_cast<std::size_t>(std::count_if(
       features.begin(), features.end(),
       [&](const store::FeatureSummary& feature) { return kept_text(*work, feature) == nullptr; }));
-  if (missing == 0) return written_page(*work, is_cancelled);
-  Response response;
-  response.further = std::make_shared<const FurtherWork>(FurtherWork{
-      missing <= kFewFeatures ? Lane::small : Lane::computing,
-      {},
-      [work](const CancelPoll& is_unwanted) { return written_page(*work, is_unwanted); }});
-  return response;
+  // What the cache has may be gone a moment later, so this lane too leaves large features to
+  // others.
+  if (missing == 0) return written_page(work, Lane::reading, is_cancelled);
+  return page_in_lane(work, missing <= kFewFeatures ? Lane::small : Lane::computing);
 }
 
 }  // namespace
@@ -301,7 +316,7 @@ Response get_items(const RoutedRequest& request) {
     }
     work->page = *std::move(page);
   }
-  return page_of(std::move(work), request.is_cancelled);
+  return page_of(work, request.is_cancelled);
 }
 
 }  // namespace watertight::server

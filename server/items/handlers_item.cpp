@@ -167,12 +167,6 @@ std::optional<Response> cached(const ItemRequest& item, std::uint64_t version) {
   return in_range(item.message, *kept);
 }
 
-bool is_large(const StoredFeature& feature) {
-  std::size_t bytes = feature.skeleton.bytes.size() + feature.page.size();
-  for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
-  return bytes > kSmallBody;
-}
-
 /// Reads the feature and makes its representation; leaves a large one to the lane for that.
 Response read_and_represent(const ItemRequest& item) {
   auto feature = item.service.store->get(item.collection, item.id);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/matchers/catch_matchers_floating_point.hpp>
+#include <random>
 #include <set>
 
 #include "server/features/cors.h"
@@ -168,6 +169,40 @@ TEST_CASE_METHOD(City, "a summary has the facts without a look into the features
   CHECK(json["features"][0]["geometry"].is_null());
   CHECK(json["features"][0]["properties"]["proven"] == true);
   CHECK(json["features"][0]["bbox"] == Json::parse("[155000,463000,0,155001,463001,2.5]"));
+}
+
+TEST_CASE_METHOD(Fixture, "pages are written where they keep no other request waiting") {
+  std::mt19937 random(1);  // a text that packs badly
+  std::string noise;
+  for (int i = 0; i < 30'000; ++i) noise += std::to_string(random());
+  std::string large = samples::feature("large");
+  large.replace(large.find("2.50"), 4, '"' + noise + '"');
+  REQUIRE(
+      post("/collections/town/items", samples::sequence({samples::feature("a"), large})).status ==
+      201);
+  const CancelPoll never = [] { return false; };
+  const server::Service service{&store, nullptr, {}};
+  const auto lanes_of = [&](const std::string& target) {
+    std::vector<server::Lane> lanes;
+    server::Response response = server::respond(service, {"GET", target, {}, ""}, never);
+    while (response.further) {
+      lanes.push_back(response.further->lane);
+      response = std::shared_ptr(response.further)->make(never);
+    }
+    CHECK(response.status == 200);
+    return lanes;
+  };
+  using enum server::Lane;
+  CHECK(lanes_of("/collections/town/items?limit=2") == std::vector{small, computing});
+  REQUIRE(store.remove("town", "large"));
+  CHECK(lanes_of("/collections/town/items") == std::vector{small});
+  CHECK(lanes_of("/collections/town/items?f=summary").empty());
+  CHECK(lanes_of("/collections/town/items?bbox=100,0,101,1").empty());
+
+  server::Response stopped =
+      server::respond(service, {"GET", "/collections/town/items", {}, ""}, never);
+  REQUIRE(stopped.further);
+  CHECK(stopped.further->make([] { return true; }).status == 503);
 }
 
 TEST_CASE_METHOD(City, "links are absolute, by the request or by what a proxy says of it") {

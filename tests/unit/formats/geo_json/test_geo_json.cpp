@@ -109,6 +109,28 @@ TEST_CASE("rings that name no vertices are left out, with the holes of an exteri
   }
 }
 
+TEST_CASE("small texts that place large templates are not shown beyond a limit") {
+  std::string ring;
+  for (int i = 0; i < 100'000; ++i) ring += "0,1,2,";
+  std::string header = kHeader;
+  header.replace(header.find("[[[0,1,2]]]"), 11, "[[[" + ring + "0]]]");
+  std::string instances;
+  for (int i = 0; i < 7; ++i) {
+    instances += std::string(i > 0 ? "," : "") +
+                 R"({"type":"GeometryInstance","template":0,"boundaries":[1],)"
+                 R"("transformationMatrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]})";
+  }
+  const auto reader = CityFeatureReader::make(header);
+  REQUIRE(reader);
+  const std::string text =
+      feature_of(R"("a":{"type":"Building","geometry":[)" + instances + "]}", kSquare);
+  const auto feature = reader->read(text, "a");
+  REQUIRE(feature);
+  CHECK(feature->is_too_large);
+  CHECK(feature->shapes.polygons.empty());
+  CHECK(written(*feature)["geometry"].is_null());
+}
+
 TEST_CASE("properties are the attributes of the object and what its parts add with one voice") {
   const std::string objects =
       R"("a":{"type":"Building","attributes":{"year":1932,"name":"\u00e9","wt_version":1}},)"

@@ -19,6 +19,7 @@ inline constexpr std::string_view kJson = "application/json";
 inline constexpr std::string_view kHtml = "text/html";
 inline constexpr std::string_view kHtmlPage = "text/html; charset=utf-8";  // as answers name it
 inline constexpr std::string_view kGeoJson = "application/geo+json";
+inline constexpr std::string_view kJsonFg = "application/vnd.ogc.fg+json";
 inline constexpr std::string_view kCityJson = "application/city+json";
 inline constexpr std::string_view kCityJsonSeq = "application/city+json-seq";
 inline constexpr std::string_view kObj = "model/obj";

@@ -73,14 +73,6 @@ double rank_of(std::string_view level) {
   return rank;
 }
 
-/// The arrays of arrays around the surfaces of a geometry type; nothing for other types.
-std::optional<int> levels_around_surfaces(std::string_view type) {
-  if (type == "MultiSurface" || type == "CompositeSurface") return 1;
-  if (type == "Solid") return 2;
-  if (type == "MultiSolid" || type == "CompositeSolid") return 3;
-  return std::nullopt;
-}
-
 /// The place of a template: its positions times the matrix, moved by the anchor.
 struct TemplatePlace {
   std::array<double, kMatrixSize> matrix{};  // row by row
@@ -105,8 +97,12 @@ class ShapeBuilder {
       : vertices_(vertices), shapes_(shapes), count_(count), place_(place) {}
 
   void add(const std::string& type, const Json& boundaries) {
-    if (const auto levels = levels_around_surfaces(type)) return add_surfaces(boundaries, *levels);
     if (!boundaries.is_array()) return;
+    if (type == "MultiSurface" || type == "CompositeSurface") add_surfaces(boundaries);
+    if (type == "Solid") add_solid(boundaries);
+    if (type == "MultiSolid" || type == "CompositeSolid") {
+      for (const Json& shells : boundaries) add_solid(shells);
+    }
     if (type == "MultiLineString") {
       for (const Json& line : boundaries) {
         auto positions = ring_of(line, 2);
@@ -119,15 +115,20 @@ class ShapeBuilder {
   }
 
  private:
-  void add_surfaces(const Json& boundaries, int levels) {
-    if (!boundaries.is_array()) return;
-    for (const Json& part : boundaries) {
-      if (levels > 1) {
-        add_surfaces(part, levels - 1);
-      } else {
-        add_surface(part);
-      }
+  void add_solid(const Json& shells) {
+    if (!shells.is_array()) return;
+    std::vector<CityShapes::Shell> solid;
+    for (const Json& shell : shells) {
+      const std::size_t first = shapes_.polygons.size();
+      add_surfaces(shell);
+      solid.push_back({first, shapes_.polygons.size() - first});
     }
+    shapes_.solids.push_back(std::move(solid));
+  }
+
+  void add_surfaces(const Json& surfaces) {
+    if (!surfaces.is_array()) return;
+    for (const Json& surface : surfaces) add_surface(surface);
   }
 
   void add_surface(const Json& rings) {

@@ -28,6 +28,12 @@ struct CityShapes {
   /// The most decimals that x, y and z have; nothing where the document does not limit them.
   std::optional<std::array<int, 3>> decimals;
   std::vector<Polygon> polygons;  // facets, of solids and surfaces alike
+  /// The solids: for each its shells, the outer one first, as runs of `polygons`.
+  struct Shell {
+    std::size_t first = 0;
+    std::size_t count = 0;
+  };
+  std::vector<std::vector<Shell>> solids;
   std::vector<Ring> lines;
   std::vector<std::size_t> points;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <span>
 
 #include "formats/text/json.h"
 
@@ -56,16 +57,28 @@ void append_array(std::string& out, const Items& items, Append append) {
   out += ']';
 }
 
+void append_polygon(std::string& out, const CityShapes& shapes,
+                    const CityShapes::Polygon& polygon) {
+  append_array(out, polygon, [&](const CityShapes::Ring& ring) {
+    CityShapes::Ring closed = ring;
+    closed.push_back(ring.front());
+    append_array(out, closed, [&](std::size_t index) { append_position(out, shapes, index); });
+  });
+}
+
 void append_polygons(std::string& out, const CityShapes& shapes) {
   out += R"({"type":"MultiPolygon","coordinates":)";
-  append_array(out, shapes.polygons, [&](const CityShapes::Polygon& polygon) {
-    append_array(out, polygon, [&](const CityShapes::Ring& ring) {
-      CityShapes::Ring closed = ring;
-      closed.push_back(ring.front());
-      append_array(out, closed, [&](std::size_t index) { append_position(out, shapes, index); });
-    });
-  });
+  append_array(out, shapes.polygons,
+               [&](const CityShapes::Polygon& polygon) { append_polygon(out, shapes, polygon); });
   out += '}';
+}
+
+void append_polyhedron(std::string& out, const CityShapes& shapes,
+                       const std::vector<CityShapes::Shell>& solid) {
+  append_array(out, solid, [&](const CityShapes::Shell& shell) {
+    append_array(out, std::span(shapes.polygons).subspan(shell.first, shell.count),
+                 [&](const CityShapes::Polygon& polygon) { append_polygon(out, shapes, polygon); });
+  });
 }
 
 void append_lines(std::string& out, const CityShapes& shapes) {
@@ -98,6 +111,21 @@ void append_geometry(std::string& out, const CityShapes& shapes) {
   }
 }
 
+/// Appends the solids; without any, all geometry.
+void append_place(std::string& out, const CityShapes& shapes) {
+  if (shapes.solids.empty()) return append_geometry(out, shapes);
+  const bool is_one = shapes.solids.size() == 1;
+  out.append(R"({"type":")").append(is_one ? "Polyhedron" : "MultiPolyhedron");
+  out += R"(","coordinates":)";
+  if (is_one) {
+    append_polyhedron(out, shapes, shapes.solids.front());
+  } else {
+    append_array(out, shapes.solids,
+                 [&](const auto& solid) { append_polyhedron(out, shapes, solid); });
+  }
+  out += '}';
+}
+
 /// Appends the minima, then the maxima, of all positions.
 void append_bbox(std::string& out, const CityShapes& shapes) {
   std::array<double, 3> min = shapes.positions.front();
@@ -119,16 +147,9 @@ void append_bbox(std::string& out, const CityShapes& shapes) {
   out.append(R"("bbox":)").append(minima).append(maxima, 1).append(",");
 }
 
-}  // namespace
-
-std::string geo_json_feature(std::string_view id, const CityFeature& feature,
-                             const std::vector<std::pair<std::string, std::string>>& further) {
-  std::string out = R"({"type":"Feature","id":)";
-  append_json_string(out, id);
-  out += ',';
-  if (!feature.shapes.positions.empty()) append_bbox(out, feature.shapes);
-  out += R"("geometry":)";
-  append_geometry(out, feature.shapes);
+/// Appends the member "properties", the last one of a feature, and its end.
+void append_properties(std::string& out, const CityFeature& feature,
+                       const std::vector<std::pair<std::string, std::string>>& further) {
   out += R"(,"properties":{)";
   bool is_first = true;
   const auto append = [&](const auto& property) {
@@ -144,7 +165,33 @@ std::string geo_json_feature(std::string_view id, const CityFeature& feature,
     if (!is_hidden) append(property);
   }
   for (const auto& property : further) append(property);
-  return out += "}}";
+  out += "}}";
+}
+
+}  // namespace
+
+std::string geo_json_feature(std::string_view id, const CityFeature& feature,
+                             const std::vector<std::pair<std::string, std::string>>& further) {
+  std::string out = R"({"type":"Feature","id":)";
+  append_json_string(out, id);
+  out += ',';
+  if (!feature.shapes.positions.empty()) append_bbox(out, feature.shapes);
+  out += R"("geometry":)";
+  append_geometry(out, feature.shapes);
+  append_properties(out, feature, further);
+  return out;
+}
+
+std::string json_fg_feature(std::string_view id, std::string_view type, const CityFeature& feature,
+                            const std::vector<std::pair<std::string, std::string>>& further) {
+  std::string out = R"({"type":"Feature","id":)";
+  append_json_string(out, id);
+  out += R"(,"featureType":)";
+  append_json_string(out, type);
+  out += R"(,"time":null,"geometry":null,"place":)";
+  append_place(out, feature.shapes);
+  append_properties(out, feature, further);
+  return out;
 }
 
 }  // namespace watertight::formats

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Features as GeoJSON (RFC 7946).
+// Features as GeoJSON (RFC 7946) and JSON-FG (OGC 21-045r1).
 #pragma once
 
 #include <array>
@@ -22,5 +22,12 @@ namespace watertight::formats {
 /// Cost: linear.
 std::string geo_json_feature(std::string_view id, const CityFeature& feature,
                              const std::vector<std::pair<std::string, std::string>>& further);
+
+/// A JSON-FG Feature in the CRS that its collection names, in one line: the solids are a Polyhedron
+/// or MultiPolyhedron as `place`, with cavities as shells, and `geometry` is null; a feature
+/// without solids has what geo_json_feature() writes as `place`. `type` is its feature type.
+/// Properties and cost as there.
+std::string json_fg_feature(std::string_view id, std::string_view type, const CityFeature& feature,
+                            const std::vector<std::pair<std::string, std::string>>& further);
 
 }  // namespace watertight::formats

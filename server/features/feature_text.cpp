@@ -65,19 +65,30 @@ bool is_large(const StoredFeature& feature) {
   return bytes > kSmallBody;
 }
 
-Result<FeatureForm> FeatureForm::of_request(const Target& target, std::uint32_t srid) {
+std::string json_fg_head(PlaceSystem system, std::uint32_t srid) {
+  std::string head =
+      R"("conformsTo":["http://www.opengis.net/spec/json-fg-1/1.0/conf/core",)"
+      R"("http://www.opengis.net/spec/json-fg-1/1.0/conf/polyhedra"],"coordRefSys":)";
+  return head.append(json_string(system_uri(system, srid))).append(",");
+}
+
+Result<FeatureForm> FeatureForm::of_request(const Target& target, std::uint32_t srid,
+                                            bool is_json_fg) {
   auto system = system_of_request(target, "crs", srid);
   if (!system) return std::move(system).error();
-  FeatureForm form{*system, std::nullopt};
+  FeatureForm form{is_json_fg, *system, std::nullopt};
+  if (is_json_fg && target.parameter("crs") == nullptr) form.system = PlaceSystem::storage;
   if (const std::string* lod = target.parameter("lod")) form.lod = *lod;
   return form;
 }
 
 std::string FeatureForm::name() const {
-  std::string name = "geojson";
+  std::string name = is_json_fg ? "jsonfg" : "geojson";
   switch (system) {
     case PlaceSystem::crs84h:
+      break;
     case PlaceSystem::crs84:
+      name += "-crs84";
       break;
     case PlaceSystem::web_mercator:
       name += "-mercator";
@@ -106,6 +117,7 @@ Result<formats::CityFeature> FeatureWriter::read(const Document& document, const
 
 Result<std::string> FeatureWriter::write(StoredFeature stored) {
   const std::string id = stored.id;
+  const std::string type = stored.type;
   const std::uint32_t srid = stored.srid;
   Properties properties = own_properties(stored);
   auto document = pipeline::from_stored(std::move(stored), limits_);
@@ -125,7 +137,8 @@ Result<std::string> FeatureWriter::write(StoredFeature stored) {
     properties.emplace_back(std::string(kOwnProperty) + "no_geometry",
                             json_string(brought.error().message));
   }
-  return formats::geo_json_feature(id, *feature, properties);
+  return form_.is_json_fg ? formats::json_fg_feature(id, type, *feature, properties)
+                          : formats::geo_json_feature(id, *feature, properties);
 }
 
 }  // namespace watertight::server

@@ -13,17 +13,21 @@
 
 namespace watertight::server {
 
-/// The choices of a client for the GeoJSON of features.
+/// The choices of a client for the GeoJSON or JSON-FG of features.
 struct FeatureForm {
+  bool is_json_fg = false;
   PlaceSystem system = PlaceSystem::crs84h;
   std::optional<std::string> lod;  // nothing: the highest of each object
 
-  /// The form that a request asks for, of features in EPSG system `srid`. Errors:
-  /// invalid_argument.
-  static Result<FeatureForm> of_request(const Target& target, std::uint32_t srid);
+  /// The form that a request asks for, of features in EPSG system `srid`. JSON-FG is in the storage
+  /// CRS unless the request names another. Errors: invalid_argument.
+  static Result<FeatureForm> of_request(const Target& target, std::uint32_t srid, bool is_json_fg);
   /// The word that names the form in a tag.
   std::string name() const;
 };
+
+/// The members with which a JSON-FG document begins, with a comma after each.
+std::string json_fg_head(PlaceSystem system, std::uint32_t srid);
 
 /// Whether it takes more than a moment to decode a feature.
 bool is_large(const StoredFeature& feature);

@@ -80,7 +80,7 @@ Json summary_json(const std::string& base, const std::string& collection,
   return json;
 }
 
-/// The form of a page: GeoJSON under one of two types, the facts alone, or HTML.
+/// The form of a page: GeoJSON under one of two types, the facts alone, HTML, or JSON-FG.
 struct PageType {
   bool is_summary = false;
   std::string_view type;
@@ -90,13 +90,14 @@ std::optional<PageType> page_type(const RoutedRequest& request) {
   if (const std::string* format = request.target.parameter("f")) {
     if (*format == "geojson") return PageType{false, kGeoJson};
     if (*format == "json") return PageType{false, kJson};
+    if (*format == "jsonfg") return PageType{false, kJsonFg};
     if (*format == "summary") return PageType{true, kJson};
     if (*format == "html") return PageType{false, kHtml};
     return std::nullopt;
   }
-  const auto offer = negotiate(request.request.header("accept"), {kGeoJson, kJson, kHtml});
+  const auto offer = negotiate(request.request.header("accept"), {kGeoJson, kJson, kHtml, kJsonFg});
   if (!offer) return std::nullopt;
-  constexpr std::array<std::string_view, 3> kTypes{kGeoJson, kJson, kHtml};
+  constexpr std::array<std::string_view, 4> kTypes{kGeoJson, kJson, kHtml, kJsonFg};
   return PageType{false, kTypes[*offer]};
 }
 
@@ -111,8 +112,8 @@ struct PageWork {
   std::string base;
   std::string path;   // of this page, without the parameter `after`
   std::string after;  // "" at the start
-  std::optional<std::uint64_t> matched;
-  bool counts_itself = false;  // the page is all that matches if nothing follows it
+  std::optional<std::uint64_t>
+      matched;  // the features that match on all pages, where that is known
   store::FeaturePage page;
 
   std::string key(const store::FeatureSummary& feature) const {
@@ -146,7 +147,7 @@ Json page_head(const PageWork& work, const std::string& next, std::size_t return
   }
   json["links"].push_back(link(work.base + "/collections/" + percent_encode(work.collection),
                                "collection", kJson, "the collection"));
-  if (next.empty() && work.after.empty() && work.counts_itself) {
+  if (next.empty() && work.after.empty()) {
     json["numberMatched"] = returned;
   } else if (work.matched) {
     json["numberMatched"] = *work.matched;
@@ -161,6 +162,7 @@ Response page_response(const PageWork& work, Json head, const std::string& featu
     return html_response(items_page(work.collection, head));
   }
   std::string body = head.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (work.form.is_json_fg) body.insert(1, json_fg_head(work.form.system, work.srid));
   body.pop_back();
   body.append(R"(,"features":[)").append(features).append("]}\n");
   const PlaceSystem system = work.type.is_summary ? PlaceSystem::storage : work.form.system;
@@ -256,6 +258,53 @@ Response page_of(const std::shared_ptr<const PageWork>& work, const CancelPoll& 
   return page_in_lane(work, missing <= kFewFeatures ? Lane::small : Lane::computing);
 }
 
+/// A list of features as a client wants it.
+struct ListRequest {
+  store::StoredCollection collection;
+  FeatureForm form;
+  bool is_empty = false;  // no feature can match
+  store::FeatureQuery query;
+};
+
+/// Errors: not_found, invalid_argument, unsupported.
+Result<ListRequest> list_request(const RoutedRequest& request, const PageType& type) {
+  const Target& target = request.target;
+  auto collection = request.service.store->collection(target.segments[1]);
+  if (!collection) return std::move(collection).error();
+  auto form = FeatureForm::of_request(target, collection->srid, type.type == kJsonFg);
+  if (!form) return std::move(form).error();
+  const auto box = box_of_request(target, *collection);
+  if (!box) return box.error();
+  const std::string* datetime = target.parameter("datetime");
+  if (datetime != nullptr && !is_datetime(*datetime)) {
+    return Error{ErrorCode::invalid_argument, "datetime is an instant or interval of RFC 3339"};
+  }
+  const RouteOptions& options = request.service.options;
+  const auto limit = limit_of_request(target, options, options.default_page);
+  if (!limit) return limit.error();
+  const auto is_proven = proof_of_request(target);
+  if (!is_proven) return is_proven.error();
+  auto where = conditions_of_request(target);
+  if (!where) return std::move(where).error();
+  const std::string* after = target.parameter("after");
+  const double share = box->box && collection->box ? share_of(*collection->box, *box->box) : 0;
+  store::FeatureQuery query{collection->id,   *limit, after == nullptr ? std::string() : *after,
+                            box->box,         share,  *is_proven,
+                            *std::move(where)};
+  return ListRequest{*std::move(collection), *std::move(form), box->is_empty, std::move(query)};
+}
+
+/// The problem of a list that the store refuses. A name that is no parameter counts as the name of
+/// an attribute, so that a refused attribute may be a parameter that was meant otherwise.
+Response refused_list(const Error& error, bool has_conditions) {
+  Problem problem = to_problem(error);
+  if (has_conditions && problem.status == 400) {
+    problem.detail += "; other parameters:";
+    for (const std::string_view known : kItemParameters) problem.detail.append(" ").append(known);
+  }
+  return to_response(problem);
+}
+
 }  // namespace
 
 Response get_items(const RoutedRequest& request) {
@@ -263,59 +312,28 @@ Response get_items(const RoutedRequest& request) {
   if (!type) {
     return refuse(406, "not-acceptable",
                   "a list of items is available as application/geo+json (f=geojson), "
-                  "application/json (f=json, or f=summary for facts without geometry) or "
-                  "text/html (f=html)");
+                  "application/json (f=json, or f=summary for facts without geometry), "
+                  "application/vnd.ogc.fg+json (f=jsonfg) or text/html (f=html)");
   }
-  const auto collection = request.service.store->collection(request.target.segments[1]);
-  if (!collection) return to_response(to_problem(collection.error()));
-  const auto form = FeatureForm::of_request(request.target, collection->srid);
-  if (!form) return to_response(to_problem(form.error()));
-  const auto box = box_of_request(request.target, *collection);
-  if (!box) return to_response(to_problem(box.error()));
-  const std::string* datetime = request.target.parameter("datetime");
-  if (datetime != nullptr && !is_datetime(*datetime)) {
-    return refuse(400, "invalid-argument", "datetime is an instant or interval of RFC 3339");
-  }
-  const auto limit = limit_of_request(request.target, request.service.options,
-                                      request.service.options.default_page);
-  if (!limit) return to_response(to_problem(limit.error()));
-  const auto is_proven = proof_of_request(request.target);
-  if (!is_proven) return to_response(to_problem(is_proven.error()));
-  auto where = conditions_of_request(request.target);
-  if (!where) return to_response(to_problem(where.error()));
-  const bool has_conditions = !where->empty();
-  const std::string* after = request.target.parameter("after");
-
-  auto work = std::make_shared<PageWork>();
+  const auto wanted = list_request(request, *type);
+  if (!wanted) return to_response(to_problem(wanted.error()));
+  const store::FeatureQuery& query = wanted->query;
+  const auto work = std::make_shared<PageWork>();
   work->service = request.service;
-  work->collection = collection->id;
-  work->srid = collection->srid;
-  work->form = *form;
+  work->collection = wanted->collection.id;
+  work->srid = wanted->collection.srid;
+  work->form = wanted->form;
   work->type = *type;
   work->base = base_url(request);
   work->path = path_without_after(request, work->base);
-  if (after != nullptr) work->after = *after;
-  work->counts_itself = true;
-  if (!box->box && !box->is_empty && !has_conditions) {
-    work->matched = matched(*collection, *is_proven);
+  work->after = query.after;
+  if (wanted->is_empty) return page_of(work, request.is_cancelled);
+  if (!query.box && query.where.empty()) {
+    work->matched = matched(wanted->collection, query.is_proven);
   }
-  if (!box->is_empty) {
-    auto page = request.service.store->list(
-        {collection->id, *limit, work->after, box->box,
-         box->box && collection->box ? share_of(*collection->box, *box->box) : 0, *is_proven,
-         *std::move(where)});
-    if (!page) {
-      Problem problem = to_problem(page.error());
-      if (has_conditions && problem.status == 400) {
-        problem.detail += "; other parameters:";
-        for (const std::string_view known : kItemParameters) {
-          problem.detail.append(" ").append(known);
-        }
-      }
-      return to_response(problem);
-    }
-    work->page = *std::move(page);
-  }
+  auto page = request.service.store->list(query);
+  if (!page) return refused_list(page.error(), !query.where.empty());
+  work->page = *std::move(page);
   return page_of(work, request.is_cancelled);
 }
 

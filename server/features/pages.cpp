@@ -279,9 +279,13 @@ std::string item_page(const std::string& collection, const Json& feature) {
   if (feature.contains("bbox")) body += extent_facts(feature["bbox"]);
   body += "</table>\n<h2>As a file</h2>\n<ul>\n";
   constexpr std::pair<std::string_view, std::string_view> kForms[] = {
-      {"?f=cityjson", "CityJSON"},  {"?f=cityjsonseq", "CityJSONSeq"},
-      {"?f=geojson", "GeoJSON"},    {"?f=obj", "OBJ"},
-      {"?f=wt", "Watertight file"}, {"?f=proof", "Proof, measures and findings (JSON)"}};
+      {"?f=cityjson", "CityJSON"},
+      {"?f=cityjsonseq", "CityJSONSeq"},
+      {"?f=geojson", "GeoJSON"},
+      {"?f=jsonfg", "JSON-FG"},
+      {"?f=obj", "OBJ"},
+      {"?f=wt", "Watertight file"},
+      {"?f=proof", "Proof, measures and findings (JSON)"}};
   for (const auto& [href, name] : kForms) {
     body.append("<li>").append(anchor(href, name)).append("</li>\n");
   }

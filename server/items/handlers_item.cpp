@@ -23,15 +23,16 @@ struct ItemFormat {
   std::string_view type;
 };
 
-constexpr std::array<ItemFormat, 9> kFormats{{{"cityjson", kCityJson},
-                                              {"html", kHtml},
-                                              {"geojson", kGeoJson},
-                                              {"json", kJson},
-                                              {"cityjsonseq", kCityJsonSeq},
-                                              {"obj", kObj},
-                                              {"wt", kContainer},
-                                              {"blob", kBlob},
-                                              {"proof", kJson}}};
+constexpr std::array<ItemFormat, 10> kFormats{{{"cityjson", kCityJson},
+                                               {"jsonfg", kJsonFg},
+                                               {"html", kHtml},
+                                               {"geojson", kGeoJson},
+                                               {"json", kJson},
+                                               {"cityjsonseq", kCityJsonSeq},
+                                               {"obj", kObj},
+                                               {"wt", kContainer},
+                                               {"blob", kBlob},
+                                               {"proof", kJson}}};
 
 std::optional<ItemFormat> chosen_format(const RoutedRequest& request) {
   const std::string* wanted = request.target.parameter("f");
@@ -56,7 +57,7 @@ struct ItemRequest {
   std::string id;
   ItemFormat format;
   std::string solid;  // the parameter `solid`, "" if there is none
-  FeatureForm form;   // of GeoJSON; others are in the storage CRS
+  FeatureForm form;   // of GeoJSON and JSON-FG; others are in the storage CRS
   Request message;    // of a GET or HEAD, so without a body
 
   /// The word that names the representation in its tag.
@@ -66,7 +67,7 @@ struct ItemRequest {
     if (!solid.empty()) name += '-' + percent_encode(solid);
     return name;
   }
-  bool is_geo_json() const { return format.parameter == "geojson"; }
+  bool is_geo_json() const { return format.parameter == "geojson" || form.is_json_fg; }
   std::string key(std::uint64_t version) const {
     return collection + '/' + id + '/' + etag_of(version, representation());
   }
@@ -103,9 +104,11 @@ Bytes bytes_of(std::string_view text) {
 Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
   const std::string_view format = item.format.parameter;
   if (item.is_geo_json()) {
-    const auto text =
-        FeatureWriter(item.form, item.service.options.limits).write(std::move(feature));
-    return text ? Result<Bytes>(bytes_of(*text + "\n")) : Result<Bytes>(text.error());
+    const std::uint32_t srid = feature.srid;
+    auto text = FeatureWriter(item.form, item.service.options.limits).write(std::move(feature));
+    if (!text) return std::move(text).error();
+    if (item.form.is_json_fg) text->insert(1, json_fg_head(item.form.system, srid));
+    return bytes_of(*text + "\n");
   }
   if (format == "html") {
     const auto text = FeatureWriter({}, item.service.options.limits).write(std::move(feature));
@@ -191,7 +194,8 @@ Response get_item(const RoutedRequest& request) {
     return refuse(
         406, "not-acceptable",
         "an item is available as application/city+json (f=cityjson), application/json (f=json), "
-        "application/geo+json (f=geojson), text/html (f=html), "
+        "application/geo+json (f=geojson), application/vnd.ogc.fg+json (f=jsonfg), text/html "
+        "(f=html), "
         "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
         "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs "
         "and findings with f=proof");
@@ -200,16 +204,18 @@ Response get_item(const RoutedRequest& request) {
   if (solid != nullptr && format->parameter != "blob") {
     return refuse(400, "invalid-argument", "the parameter solid is for f=blob only");
   }
-  FeatureForm form{PlaceSystem::storage, std::nullopt};
-  if (format->parameter == "geojson") {
+  FeatureForm form{false, PlaceSystem::storage, std::nullopt};
+  if (format->parameter == "geojson" || format->parameter == "jsonfg") {
     const auto collection = request.service.store->collection(request.target.segments[1]);
     if (!collection) return to_response(to_problem(collection.error()));
-    const auto wanted = FeatureForm::of_request(request.target, collection->srid);
+    const auto wanted =
+        FeatureForm::of_request(request.target, collection->srid, format->parameter == "jsonfg");
     if (!wanted) return to_response(to_problem(wanted.error()));
     form = *wanted;
   } else if (request.target.parameter("crs") != nullptr ||
              request.target.parameter("lod") != nullptr) {
-    return refuse(400, "invalid-argument", "the parameters crs and lod are for f=geojson only");
+    return refuse(400, "invalid-argument",
+                  "the parameters crs and lod are for f=geojson and f=jsonfg only");
   }
   const ItemRequest item{request.service,
                          request.target.segments[1],

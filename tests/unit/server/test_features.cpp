@@ -290,6 +290,34 @@ TEST_CASE("pages of an origin that is named may read, and no others") {
   }
 }
 
+TEST_CASE_METHOD(City,
+                 "JSON-FG has the solids as polyhedra, which are valid when they are read again") {
+  const server::Response item = get("/collections/town/items/a?f=jsonfg");
+  CHECK(item.content_type == "application/vnd.ogc.fg+json");
+  CHECK(*header_of(item, "Content-Crs") == "<" + uri("EPSG/0/7415") + ">");
+  const Json feature = Json::parse(item.body);
+  CHECK(feature["coordRefSys"] == uri("EPSG/0/7415"));
+  CHECK(feature["conformsTo"].size() == 2);
+  CHECK(feature["featureType"] == "Building");
+  CHECK(feature["time"].is_null());
+  CHECK(feature["geometry"].is_null());
+  CHECK(feature["place"]["type"] == "Polyhedron");
+  CHECK(feature["properties"]["height"] == 2.5);
+  const Json report = Json::parse(post("/validate", item.body, "application/vnd.ogc.fg+json").body);
+  CHECK(report["verdict"] == "valid");
+  CHECK(report["features"].size() == 1);
+  CHECK(get("/collections/town/items", {{"accept", "application/vnd.ogc.fg+json"}}).content_type ==
+        "application/vnd.ogc.fg+json");
+  const server::Response list = get("/collections/town/items?f=jsonfg");
+  const Json all = Json::parse(post("/validate", list.body, "application/vnd.ogc.fg+json").body);
+  CHECK(all["features"].size() == 2);
+  CHECK(all["verdict"] == "valid");
+  const Json degrees = page("?f=jsonfg&crs=" + uri("OGC/0/CRS84h"));
+  CHECK(degrees["coordRefSys"] == uri("OGC/0/CRS84h"));
+  CHECK_THAT(degrees["features"][0]["place"]["coordinates"][0][0][0][0][0].get<double>(),
+             WithinAbs(5.387206, kFewMetres));
+}
+
 // Abstract tests of part 1, HTML: /conf/html/content, definition.
 TEST_CASE_METHOD(Fixture, "browsers get pages whose links lead on, with every text escaped") {
   std::string text = kTwo;

@@ -109,6 +109,32 @@ TEST_CASE("rings that name no vertices are left out, with the holes of an exteri
   }
 }
 
+TEST_CASE("JSON-FG has solids with their cavities as polyhedra, and other geometry as it is") {
+  const std::string shells = "[[[[0,1,2]],[[0,2,3]]],[[[4,5,6]]]]";
+  const std::string one =
+      R"("a":{"type":"Building","geometry":[{"type":"Solid","lod":"2","boundaries":)" + shells +
+      "}]}";
+  const Json solid =
+      Json::parse(formats::json_fg_feature("a", "Building", read(feature_of(one, kSquare)), {}));
+  CHECK(solid["place"]["type"] == "Polyhedron");
+  REQUIRE(solid["place"]["coordinates"].size() == 2);
+  CHECK(solid["place"]["coordinates"][0].size() == 2);
+  CHECK(solid["place"]["coordinates"][1][0][0].size() == 4);
+  CHECK(solid["geometry"].is_null());
+  CHECK(solid["time"].is_null());
+  const std::string two = R"("a":{"type":"Building","geometry":[{"type":"MultiSolid","lod":"2",)"
+                          R"("boundaries":[)" +
+                          shells + "," + shells + "]}]}";
+  const Json several =
+      Json::parse(formats::json_fg_feature("a", "Building", read(feature_of(two, kSquare)), {}));
+  CHECK(several["place"]["type"] == "MultiPolyhedron");
+  CHECK(several["place"]["coordinates"].size() == 2);
+  const std::string flat =
+      R"("a":{"type":"TINRelief","geometry":[)" + surface("2", "[[[0,1,2]]]") + "]}";
+  CHECK(Json::parse(formats::json_fg_feature("a", "TINRelief", read(feature_of(flat, kSquare)),
+                                             {}))["place"]["type"] == "MultiPolygon");
+}
+
 TEST_CASE("small texts that place large templates are not shown beyond a limit") {
   std::string ring;
   for (int i = 0; i < 100'000; ++i) ring += "0,1,2,";

@@ -257,10 +257,10 @@ std::string items_page(const std::string& collection, const Json& items) {
   const std::string up = link_named(items, "collection");
   const std::string start = start_of(up);
   const std::vector<std::string> columns = columns_of(items["features"]);
-  std::string body = "<p>" + text_of(items["numberReturned"]) + " features";
+  std::string body = "<p>Features on this page: " + text_of(items["numberReturned"]);
   if (items.contains("numberMatched")) body += " of " + text_of(items["numberMatched"]);
-  body += " on this page.</p>\n<table>\n<tr>" + heading("Feature") + heading("Type") +
-          heading("Proof") + heading("Solids", true);
+  body += ".</p>\n<table>\n<tr>" + heading("Feature") + heading("Type") + heading("Proof") +
+          heading("Solids", true);
   for (const std::string& name : columns) body += heading(name);
   body += "</tr>\n";
   for (const Json& feature : items["features"]) body += item_row(up + "/items", feature, columns);

@@ -10,6 +10,7 @@
 
 #include "server/features/cors.h"
 #include "server/features/links.h"
+#include "server/items/representation_cache.h"
 #include "tests/unit/server/routes_fixture.h"
 
 namespace watertight {
@@ -203,6 +204,62 @@ TEST_CASE_METHOD(Fixture, "pages are written where they keep no other request wa
       server::respond(service, {"GET", "/collections/town/items", {}, ""}, never);
   REQUIRE(stopped.further);
   CHECK(stopped.further->make([] { return true; }).status == 503);
+}
+
+TEST_CASE_METHOD(Fixture, "features of a page are decoded once for each version and form") {
+  REQUIRE(post("/collections/town/items", amersfoort()).status == 201);
+  server::RepresentationCache cache(std::size_t{1} << 20U);
+  server::Service service{&store, nullptr, {}};
+  service.cache = &cache;
+  const CancelPoll never = [] { return false; };
+  const auto decoded = [&](const std::string& target) {
+    const std::size_t before = store.gets;
+    server::Response response = server::respond(service, {"GET", target, {}, ""}, never);
+    while (response.further) response = std::shared_ptr(response.further)->make(never);
+    REQUIRE(response.status == 200);
+    return store.gets - before;
+  };
+  CHECK(decoded("/collections/town/items") == 2);
+  CHECK(decoded("/collections/town/items") == 0);
+  CHECK(decoded("/collections/town/items?limit=1") == 0);
+  CHECK(decoded("/collections/town/items?f=html") == 0);
+  CHECK(decoded("/collections/town/items?f=jsonfg") == 2);
+  CHECK(decoded("/collections/town/items?crs=" + uri("EPSG/0/3857")) == 2);
+  CHECK(decoded("/collections/town/items?lod=1") == 2);
+  CHECK(decoded("/collections/town/items/a?f=geojson&crs=" + uri("OGC/1.3/CRS84")) == 1);
+  const server::Response item =
+      server::respond(service, {"GET", "/collections/town/items/a?f=geojson", {}, ""}, never);
+  REQUIRE(item.further);  // the kept answer is of another CRS
+  CHECK(*header_of(item.further->make(never), "Content-Crs") == "<" + uri("OGC/0/CRS84h") + ">");
+  REQUIRE(post("/collections/town/items", amersfoort()).status == 201);
+  CHECK(decoded("/collections/town/items") == 2);
+}
+
+TEST_CASE_METHOD(Fixture, "bbox finds features by all of their geometry, with solids or without") {
+  const std::string terrain =
+      R"({"type":"CityJSONFeature","id":"t","CityObjects":{"t":{"type":"TINRelief","geometry":[)"
+      R"({"type":"CompositeSurface","lod":"1","boundaries":[[[0,1,2]]]}]}},)"
+      R"("vertices":[[9000,9000,1000],[10000,9000,1000],[9000,10000,1500]]})";
+  std::string both = samples::feature("b");
+  both.replace(both.find(R"("geometry":[)"), 12,
+               R"("geometry":[{"type":"MultiSurface","lod":"1","boundaries":[[[8,9,10]]]},)");
+  both.replace(both.find("[0,1000,2500]]"), 14,
+               "[0,1000,2500],[50000,0,0],[51000,0,0],[50000,1000,0]]");
+  REQUIRE(post("/collections/town/items", samples::sequence({terrain, both})).status == 201);
+  const auto found = [&](const std::string& box) {
+    const Json json = Json::parse(
+        get("/collections/town/items?f=summary&bbox=" + box + "&bbox-crs=" + uri("EPSG/0/7415"))
+            .body);
+    std::string ids;
+    for (const Json& feature : json["features"]) ids += feature["id"].get<std::string>();
+    return ids;
+  };
+  CHECK(found("109,209,110,210") == "t");
+  CHECK(found("100,200,100.5,200.5") == "b");
+  CHECK(found("150.5,200,152,200.5") == "b");
+  CHECK(found("152,200,153,201").empty());
+  CHECK(found("109,209,1.2,110,210,1.3") == "t");
+  CHECK(found("109,209,3,110,210,4").empty());
 }
 
 TEST_CASE_METHOD(City, "links are absolute, by the request or by what a proxy says of it") {

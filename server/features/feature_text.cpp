@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/json_text.h"
 #include "formats/city_json/city_json.h"
 #include "formats/geo_json/geo_json.h"
-#include "server/json_answers.h"
 
 namespace watertight::server {
 namespace {
@@ -18,10 +18,6 @@ constexpr int kDecimalsOfDegrees = 9;  // a tenth of a millimetre
 constexpr int kDecimalsOfMetres = 4;
 constexpr int kMostDecimalsOfHeights = 20;
 constexpr std::size_t kMostReaders = 64;
-
-std::string json_string(std::string_view text) {
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 /// The facts about a feature that the store knows.
 Properties own_properties(const StoredFeature& feature) {

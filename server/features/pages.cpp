@@ -7,10 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "report/html/html_page.h"
 #include "server/features/feature_text.h"
 
 namespace watertight::server {
 namespace {
+
+using report::html_text;
 
 constexpr std::size_t kMostColumns = 6;  // of attributes in a list of items
 
@@ -31,32 +34,9 @@ nav{margin-bottom:1em}.bad{font-weight:bold}
 </style>
 )";
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 std::string anchor(std::string_view href, std::string_view text) {
   std::string out = "<a href=\"";
-  return out.append(escaped(href)).append("\">").append(escaped(text)).append("</a>");
+  return out.append(html_text(href)).append("\">").append(html_text(text)).append("</a>");
 }
 
 /// A value as text: strings without quotes, others as JSON.
@@ -68,17 +48,17 @@ std::string text_of(const Json& value) {
 
 std::string cell(const Json& value) {
   std::string out = value.is_number() ? "<td class=\"number\">" : "<td>";
-  return out.append(escaped(text_of(value))).append("</td>");
+  return out.append(html_text(text_of(value))).append("</td>");
 }
 
 std::string heading(std::string_view text, bool is_number = false) {
   std::string out = is_number ? "<th scope=\"col\" class=\"number\">" : "<th scope=\"col\">";
-  return out.append(escaped(text)).append("</th>");
+  return out.append(html_text(text)).append("</th>");
 }
 
 std::string fact(std::string_view name, const Json& value) {
   std::string out = "<tr><th scope=\"row\">";
-  out.append(escaped(name)).append("</th><td>").append(escaped(text_of(value)));
+  out.append(html_text(name)).append("</th><td>").append(html_text(text_of(value)));
   return out.append("</td></tr>\n");
 }
 
@@ -119,11 +99,11 @@ std::string page(std::string_view title,
                  const std::vector<std::pair<std::string, std::string>>& path,
                  std::string_view body) {
   std::string out(kHead);
-  out.append("<title>").append(escaped(title)).append(" - Watertight</title>\n");
+  out.append("<title>").append(html_text(title)).append(" - Watertight</title>\n");
   if (!path.empty()) out += "<nav aria-label=\"Path\">";
   for (const auto& [href, name] : path) out.append(anchor(href, name)).append(" / ");
   if (!path.empty()) out += "</nav>\n";
-  out.append("<h1>").append(escaped(title)).append("</h1>\n").append(body);
+  out.append("<h1>").append(html_text(title)).append("</h1>\n").append(body);
   return out.append("</html>\n");
 }
 
@@ -190,11 +170,11 @@ Response html_response(std::string page) {
 }
 
 std::string landing_page(const Json& landing) {
-  std::string body = "<p>" + escaped(landing["description"].get<std::string>()) + ".</p>\n<ul>\n";
+  std::string body = "<p>" + html_text(landing["description"].get<std::string>()) + ".</p>\n<ul>\n";
   for (const Json& item : landing["links"]) {
     const std::string href = item["href"];
     body.append("<li>").append(anchor(href, href)).append(" ");
-    body.append(escaped(item["title"].get<std::string>())).append("</li>\n");
+    body.append(html_text(item["title"].get<std::string>())).append("</li>\n");
   }
   body +=
       "</ul>\n<p>QGIS and GDAL read the collections by the address of this page (OGC API "
@@ -205,7 +185,7 @@ std::string landing_page(const Json& landing) {
 std::string conformance_page(const Json& conformance) {
   std::string body = "<ul>\n";
   for (const Json& name : conformance["conformsTo"]) {
-    body.append("<li>").append(escaped(name.get<std::string>())).append("</li>\n");
+    body.append("<li>").append(html_text(name.get<std::string>())).append("</li>\n");
   }
   return page("Conformance", {}, body + "</ul>\n");
 }

@@ -28,13 +28,6 @@ std::optional<double> number_of(const Json& value) {
   return number;
 }
 
-double double_of(const GridNumber& number) {
-  const std::string text = plain_text(number);
-  double value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
-
 /// Three numbers; nothing for another value.
 std::optional<Position> position_of(const Json& value) {
   if (!value.is_array() || value.size() != 3) return std::nullopt;
@@ -326,8 +319,8 @@ Result<CityFeatureReader> CityFeatureReader::make(std::string_view header, const
     }
     made->decimals.emplace();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      made->scale[axis] = double_of((*scale)[axis]);
-      made->translate[axis] = double_of((*translate)[axis]);
+      made->scale[axis] = geometry::rounded((*scale)[axis]);
+      made->translate[axis] = geometry::rounded((*translate)[axis]);
       (*made->decimals)[axis] =
           std::max({0, -(*scale)[axis].exponent, -(*translate)[axis].exponent});
     }

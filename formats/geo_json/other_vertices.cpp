@@ -2,19 +2,11 @@
 #include "formats/geo_json/other_vertices.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "formats/city_json/model.h"
 #include "formats/text/numbers.h"
 
 namespace watertight::formats {
-namespace {
-
-double double_of(const GridNumber& number) {
-  return static_cast<double>(number.mantissa) * std::pow(10.0, number.exponent);
-}
-
-}  // namespace
 
 std::optional<CoordinateRanges> ranges_of_other_vertices(
     std::string_view skeleton, const std::optional<geometry::Transform>& transform) {
@@ -26,8 +18,8 @@ std::optional<CoordinateRanges> ranges_of_other_vertices(
   std::array<double, 3> scale{1, 1, 1};
   std::array<double, 3> translate{};
   for (std::size_t axis = 0; is_moved && axis < 3; ++axis) {
-    scale[axis] = double_of(transform->scale[axis]);
-    translate[axis] = double_of(transform->translate[axis]);
+    scale[axis] = geometry::rounded(transform->scale[axis]);
+    translate[axis] = geometry::rounded(transform->translate[axis]);
   }
   std::optional<CoordinateRanges> ranges;
   std::size_t axis = 0;  // of the number that comes next
@@ -36,7 +28,7 @@ std::optional<CoordinateRanges> ranges_of_other_vertices(
     if (value.is_array()) continue;  // an element that is no vertex
     const auto number = exact_number(json_text(value));
     if (!number) return std::nullopt;
-    position[axis] = double_of(number->value) * scale[axis] + translate[axis];
+    position[axis] = geometry::rounded(number->value) * scale[axis] + translate[axis];
     if (++axis < 3) continue;
     axis = 0;
     if (!ranges) ranges = CoordinateRanges{position, position};

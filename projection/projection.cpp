@@ -47,6 +47,17 @@ class Library {
     return place->second.get();
   }
 
+  /// From longitude, latitude and height to earth-centred coordinates.
+  PJ* earth_centred() {
+    if (!earth_centred_) {
+      earth_centred_.reset(
+          proj_create(context(),
+                      "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad "
+                      "+step +proj=cart +ellps=WGS84"));
+    }
+    return earth_centred_.get();
+  }
+
   bool is_north_first(std::uint32_t srid) {
     if (north_first_.size() >= kMostKept) north_first_.clear();
     const auto [place, is_new] = north_first_.try_emplace(srid, false);
@@ -99,6 +110,7 @@ class Library {
   Context context_;
   std::map<std::pair<std::uint32_t, System>, Object> made_;
   std::map<std::uint32_t, bool> north_first_;
+  Object earth_centred_;
 };
 
 Library& library() {
@@ -146,6 +158,14 @@ Status transform(std::uint32_t srid, System system, std::span<Position> position
     if (!std::isfinite(position[0]) || !std::isfinite(position[1])) return outside(srid, system);
   }
   return Done{};
+}
+
+void to_earth_centred(std::span<Position> positions) {
+  if (positions.empty()) return;
+  Position& first = positions.front();
+  proj_trans_generic(library().earth_centred(), PJ_FWD, &first[0], sizeof(Position),
+                     positions.size(), &first[1], sizeof(Position), positions.size(), &first[2],
+                     sizeof(Position), positions.size(), nullptr, 0, 0);
 }
 
 bool is_north_first(std::uint32_t srid) { return library().is_north_first(srid); }

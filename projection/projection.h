@@ -35,6 +35,10 @@ enum class System : std::uint8_t {
 /// thread.
 Status transform(std::uint32_t srid, System system, std::span<Position> positions);
 
+/// Changes longitudes, latitudes (degrees) and heights above the ellipsoid of WGS 84 (metres) into
+/// the Cartesian coordinates of EPSG:4978: metres from the centre of the Earth. Cost: linear.
+void to_earth_centred(std::span<Position> positions);
+
 /// Whether the first axis of EPSG system `srid` points north by the authority's definition, so that
 /// its coordinates are written northing (or latitude) first. False for unknown codes. Cost: as
 /// transform().

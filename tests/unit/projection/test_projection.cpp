@@ -39,6 +39,18 @@ TEST_CASE("well-known points have their published longitude and latitude") {
   }
 }
 
+TEST_CASE("earth-centred coordinates are those of the ellipsoid's axes") {
+  std::vector<Position> positions{{0, 0, 0}, {90, 0, 100}, {0, 90, 0}, {180, -90, 10}};
+  projection::to_earth_centred(positions);
+  const std::vector<Position> expected{
+      {6378137, 0, 0}, {0, 6378237, 0}, {0, 0, 6356752.314245}, {0, 0, -6356762.314245}};
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      CHECK_THAT(positions[i][axis], WithinAbs(expected[i][axis], 1e-6));
+    }
+  }
+}
+
 TEST_CASE("web mercator has its equator and meridian at zero") {
   std::vector<Position> positions{{0, 0, 7}, {180, 0, 7}};
   REQUIRE(projection::transform(4326, System::web_mercator, positions));

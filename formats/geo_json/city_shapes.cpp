@@ -81,6 +81,44 @@ struct TemplatePlace {
   }
 };
 
+FacetKind kind_named(std::string_view type) {
+  if (type == "RoofSurface") return FacetKind::roof;
+  if (type == "WallSurface") return FacetKind::wall;
+  if (type == "GroundSurface") return FacetKind::ground;
+  return FacetKind::other;
+}
+
+/// The semantics of a geometry: kinds, and which facet has which, in lists like its boundaries.
+struct Semantics {
+  std::vector<FacetKind> kinds;
+  const Json* values = nullptr;
+
+  static Semantics of(const Json& geometry) {
+    Semantics semantics;
+    const Json* member = find_member(geometry, "semantics");
+    if (member == nullptr) return semantics;
+    const Json* surfaces = find_member(*member, "surfaces");
+    if (surfaces == nullptr || !surfaces->is_array()) return semantics;
+    for (const Json& surface : *surfaces) {
+      semantics.kinds.push_back(kind_named(string_member(surface, "type")));
+    }
+    semantics.values = find_member(*member, "values");
+    return semantics;
+  }
+
+  /// The values of the list `index` of a list of values; null where there are none.
+  static const Json* part(const Json* values, std::size_t index) {
+    return values != nullptr && values->is_array() && index < values->size() ? &(*values)[index]
+                                                                             : nullptr;
+  }
+
+  FacetKind kind(const Json* value) const {
+    if (value == nullptr || !value->is_number_unsigned()) return FacetKind::none;
+    const auto index = value->get<std::uint64_t>();
+    return index < kinds.size() ? kinds[index] : FacetKind::none;
+  }
+};
+
 /// Adds geometries that refer to one list of positions, until there are kMostShownVertices.
 class ShapeBuilder {
  public:
@@ -89,13 +127,11 @@ class ShapeBuilder {
                const TemplatePlace* place = nullptr)
       : vertices_(vertices), shapes_(shapes), count_(count), place_(place) {}
 
-  void add(const std::string& type, const Json& boundaries) {
-    if (!boundaries.is_array()) return;
-    if (type == "MultiSurface" || type == "CompositeSurface") add_surfaces(boundaries);
-    if (type == "Solid") add_solid(boundaries);
-    if (type == "MultiSolid" || type == "CompositeSolid") {
-      for (const Json& shells : boundaries) add_solid(shells);
-    }
+  void add(const Json& geometry) {
+    const Json* list = find_member(geometry, "boundaries");
+    if (list == nullptr || !list->is_array()) return;
+    const std::string type = string_member(geometry, "type");
+    const Json& boundaries = *list;
     if (type == "MultiLineString") {
       for (const Json& line : boundaries) {
         auto positions = ring_of(line, 2);
@@ -105,26 +141,37 @@ class ShapeBuilder {
     if (type == "MultiPoint") {
       for (const std::size_t position : ring_of(boundaries, 1)) shapes_.points.push_back(position);
     }
+    semantics_ = Semantics::of(geometry);
+    const Json* values = semantics_.values;
+    if (type == "MultiSurface" || type == "CompositeSurface") add_surfaces(boundaries, values);
+    if (type == "Solid") add_solid(boundaries, values);
+    if (type == "MultiSolid" || type == "CompositeSolid") {
+      for (std::size_t i = 0; i < boundaries.size(); ++i) {
+        add_solid(boundaries[i], Semantics::part(values, i));
+      }
+    }
   }
 
  private:
-  void add_solid(const Json& shells) {
+  void add_solid(const Json& shells, const Json* values) {
     if (!shells.is_array()) return;
     std::vector<CityShapes::Shell> solid;
-    for (const Json& shell : shells) {
+    for (std::size_t i = 0; i < shells.size(); ++i) {
       const std::size_t first = shapes_.polygons.size();
-      add_surfaces(shell);
+      add_surfaces(shells[i], Semantics::part(values, i));
       solid.push_back({first, shapes_.polygons.size() - first});
     }
     shapes_.solids.push_back(std::move(solid));
   }
 
-  void add_surfaces(const Json& surfaces) {
+  void add_surfaces(const Json& surfaces, const Json* values) {
     if (!surfaces.is_array()) return;
-    for (const Json& surface : surfaces) add_surface(surface);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      add_surface(surfaces[i], semantics_.kind(Semantics::part(values, i)));
+    }
   }
 
-  void add_surface(const Json& rings) {
+  void add_surface(const Json& rings, FacetKind kind) {
     if (!rings.is_array()) return;
     CityShapes::Polygon polygon;
     for (const Json& ring : rings) {
@@ -135,7 +182,9 @@ class ShapeBuilder {
         return;  // without the exterior ring the holes would be polygons
       }
     }
-    if (!polygon.empty()) shapes_.polygons.push_back(std::move(polygon));
+    if (polygon.empty()) return;
+    shapes_.polygons.push_back(std::move(polygon));
+    shapes_.kinds.push_back(kind);
   }
 
   /// The positions of a list of vertices; none if there are fewer than `least`, or one of them does
@@ -166,6 +215,7 @@ class ShapeBuilder {
   CityShapes& shapes_;
   std::size_t& count_;
   const TemplatePlace* place_;
+  Semantics semantics_;  // of the geometry in work
   std::unordered_map<std::uint64_t, std::size_t> used_;
 };
 
@@ -233,6 +283,43 @@ struct Levelled {
 
 }  // namespace
 
+CityFeature city_feature_of(const Feature& feature) {
+  CityFeature made;
+  CityShapes& shapes = made.shapes;
+  std::size_t count = 0;
+  for (const SubmittedSolid& submitted : feature.solids) {
+    const Solid& solid = submitted.solid;
+    count += solid.arrays().ring_vertices.size();
+    if (count > kMostShownVertices) return CityFeature{{}, true, {}};
+    const std::size_t first = shapes.positions.size();
+    for (Index vertex = 0; vertex < solid.vertex_count(); ++vertex) {
+      shapes.positions.push_back(solid.world(vertex));
+    }
+    std::vector<CityShapes::Shell> shells;
+    for (Index shell = 0; shell < solid.shell_count(); ++shell) {
+      const IndexRange facets = solid.facets_of(shell);
+      const std::size_t before = shapes.polygons.size();
+      for (Index facet = facets.begin; facet < facets.end; ++facet) {
+        CityShapes::Polygon polygon;
+        const IndexRange rings = solid.rings_of(facet);
+        for (Index r = rings.begin; r < rings.end; ++r) {
+          CityShapes::Ring ring;
+          for (const Index vertex : solid.ring(r)) ring.push_back(first + vertex);
+          const bool is_short = ring.size() < 3;
+          if (is_short && polygon.empty()) break;
+          if (!is_short) polygon.push_back(std::move(ring));
+        }
+        if (polygon.empty()) continue;
+        shapes.polygons.push_back(std::move(polygon));
+        shapes.kinds.push_back(FacetKind::none);
+      }
+      shells.push_back({before, shapes.polygons.size() - before});
+    }
+    shapes.solids.push_back(std::move(shells));
+  }
+  return made;
+}
+
 struct CityFeatureReader::Header {
   std::optional<std::array<int, 3>> decimals;
   Position scale{1, 1, 1};
@@ -294,11 +381,8 @@ void CityFeatureReader::Header::add_instance(const Json& geometry,
   for (std::size_t i = 0; i < kMatrixSize; ++i) {
     place.matrix[i] = number_of((*matrix)[i]).value_or(0);
   }
-  const Json* boundaries = find_member(*shape, "boundaries");
-  if (boundaries == nullptr) return;
   shapes.decimals.reset();
-  ShapeBuilder(template_vertices, shapes, count, &place)
-      .add(string_member(*shape, "type"), *boundaries);
+  ShapeBuilder(template_vertices, shapes, count, &place).add(*shape);
 }
 
 CityFeatureReader::CityFeatureReader(std::unique_ptr<Header> header) : header_(std::move(header)) {}
@@ -364,11 +448,10 @@ Result<CityFeature> CityFeatureReader::read(std::string_view feature, std::strin
     if (!lod && is_footprint_only) continue;
     for (const auto& [geometry, level, rank] : geometries) {
       if (lod ? level != *lod : rank != best) continue;
-      const std::string type = string_member(*geometry, "type");
-      if (type == "GeometryInstance") {
+      if (string_member(*geometry, "type") == "GeometryInstance") {
         header_->add_instance(*geometry, vertices, read.shapes, count);
-      } else if (const Json* boundaries = find_member(*geometry, "boundaries")) {
-        builder.add(type, *boundaries);
+      } else {
+        builder.add(*geometry);
       }
     }
   }

@@ -16,8 +16,12 @@
 
 #include "base/limits.h"
 #include "base/result.h"
+#include "formats/document.h"
 
 namespace watertight::formats {
+
+/// The part of an object that a facet is, by the semantics of its geometry.
+enum class FacetKind : std::uint8_t { none, roof, wall, ground, other };
 
 /// The geometry of a feature. Indices refer to `positions`.
 struct CityShapes {
@@ -28,6 +32,7 @@ struct CityShapes {
   /// The most decimals that x, y and z have; nothing where the document does not limit them.
   std::optional<std::array<int, 3>> decimals;
   std::vector<Polygon> polygons;  // facets, of solids and surfaces alike
+  std::vector<FacetKind> kinds;   // of each polygon
   /// The solids: for each its shells, the outer one first, as runs of `polygons`.
   struct Shell {
     std::size_t first = 0;
@@ -50,6 +55,9 @@ struct CityFeature {
   /// objects which it does not have and in which no two of them differ.
   std::vector<std::pair<std::string, std::string>> attributes;
 };
+
+/// The solids of a feature of any format, without semantics and attributes. Cost: linear.
+CityFeature city_feature_of(const Feature& feature);
 
 /// Reads the features of one header (Document::header). Thread-safe.
 class CityFeatureReader {

@@ -35,7 +35,7 @@ import sys
 import tempfile
 
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
-           "columns", "archives", "projection", "formats", "packing", "store", "pipeline", "report", "server", "cli", "sql"]
+           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "pipeline", "report", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
 MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/
@@ -48,7 +48,7 @@ HOMES = [
     (r"(postgresql/)?(libpq-fe|libpq-events)\.h", "libpq",
      [r"store/", r"tests/unit/store/", r"tests/integration/", r"bench/"]),
     (r"nlohmann/", "nlohmann-json",
-     [r"formats/", r"server/", r"cli/", r"validate/report_json", r"tests/", r"bench/"]),
+     [r"formats/", r"tiles/", r"server/", r"cli/", r"validate/report_json", r"tests/", r"bench/"]),
     (r"CGAL/", "CGAL",
      [r"geometry/", r"tessellate/", r"delaunay/", r"tests/", r"bench/"]),
     (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),
@@ -61,6 +61,7 @@ HOMES = [
     (r"expat\.h", "expat", [r"formats/"]),
     (r"curl/", "libcurl", [r"cli/remote/"]),
     (r"proj\.h", "PROJ", [r"projection/"]),
+    (r"meshoptimizer\.h", "meshoptimizer", [r"tiles/", r"tests/unit/tiles/", r"bench/"]),
     (r"draco/", "Draco", [r"bench/"]),
     (r"(postgres|fmgr|funcapi|miscadmin|varatt)\.h|(utils|catalog|executor|access|lib|mb|port|storage|parser|"
      r"nodes|commands|common|tcop)/[a-z_]+\.h", "the PostgreSQL server", [r"sql/[^/]+\.c$"]),

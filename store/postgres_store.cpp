@@ -281,6 +281,19 @@ class PostgresStore final : public SolidStore {
     });
   }
 
+  Result<PlacedPage> places(const std::string& collection, std::uint64_t limit,
+                            const std::string& after) override {
+    if (!check_collection_id(collection)) return no_such_collection();
+    return read<PlacedPage>(
+        [&](DatabaseSession& session) { return read_places(session, collection, limit, after); });
+  }
+
+  Result<std::vector<std::string>> ranked(const RankQuery& query, std::uint64_t limit) override {
+    if (!check_collection_id(query.collection)) return no_such_collection();
+    return read<std::vector<std::string>>(
+        [&](DatabaseSession& session) { return read_ranked(session, query, limit); });
+  }
+
   Result<std::vector<StoredHeader>> documents(const std::string& collection,
                                               std::uint64_t limit) override {
     if (!check_collection_id(collection)) return no_such_collection();

@@ -5,6 +5,7 @@
 // Implementations are thread-safe.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -153,6 +154,46 @@ struct FeaturePage {
   std::string next;                      // `after` of the next page; "" = this page is the last
 };
 
+/// Coordinates beyond this count as this where features are ranked by size.
+inline constexpr double kFarthest = 1e18;
+
+/// The longer side of a box in x and y.
+inline double plane_size(const StoredBox& box) {
+  const auto side = [&](std::size_t axis) {
+    return std::clamp(box.max[axis], -kFarthest, kFarthest) -
+           std::clamp(box.min[axis], -kFarthest, kFarthest);
+  };
+  return std::max(side(0), side(1));
+}
+
+/// A feature by its place and size.
+struct PlacedFeature {
+  StoredBox box;
+  std::int64_t number = 0;  // unlike that of any other feature of the collection; stays
+  std::uint64_t bytes = 0;  // of its packed text and solids
+};
+
+struct PlacedPage {
+  std::vector<PlacedFeature> features;
+  std::string next;  // `after` of the next page; "" = this page is the last
+};
+
+/// A rank of features: by plane_size(), then by PlacedFeature::number.
+struct SizeRank {
+  double size = 0;
+  std::int64_t number = 0;
+};
+
+/// Some features of a part of the plane, by their ranks.
+struct RankQuery {
+  std::string collection;
+  /// The middles of boxes are in this part: from `min` on, below `max`.
+  std::array<double, 2> min{};
+  std::array<double, 2> max{};
+  SizeRank from;                  // the lowest rank
+  std::optional<SizeRank> below;  // ranks are below it
+};
+
 /// The format and header that the features of one document share.
 struct StoredHeader {
   std::string format;
@@ -257,6 +298,14 @@ class SolidStore {
                             const std::string& after) {
     return walk(collection, limit, after, {});
   }
+  /// The places of the next features that have a box, in the order of walk(); at most `limit`
+  /// (10,000). Errors: as for walk().
+  virtual Result<PlacedPage> places(const std::string& collection, std::uint64_t limit,
+                                    const std::string& after) = 0;
+  /// The ids of features by their ranks, the highest first; at most `limit` (10,000). Errors:
+  /// not_found when there is no such collection. Cost: that of reading the boxes in the part of the
+  /// plane.
+  virtual Result<std::vector<std::string>> ranked(const RankQuery& query, std::uint64_t limit) = 0;
   /// The formats and headers of the documents that the features of a collection came in, at most
   /// `limit`; empty for a collection that does not exist.
   virtual Result<std::vector<StoredHeader>> documents(const std::string& collection,

@@ -344,6 +344,70 @@ Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& 
   return batch;
 }
 
+Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& collection,
+                               std::uint64_t limit, const std::string& after) {
+  const Result<WalkPlace> start = walk_place(after);
+  if (!start) return start.error();
+  const auto at_most = static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage));
+  const auto key = key_of_collection(connection, collection);
+  if (!key) return key.error();
+  const Result<Rows> rows = walk_rows(
+      connection,
+      "SELECT f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z, hashtextextended(f.id, 0),"
+      " (octet_length(packed_solids) + octet_length(packed_text))::int8, f.id",
+      collection, *start, at_most, {});
+  if (!rows) return rows.error();
+  PlacedPage page;
+  for (int row = 0; row < rows->size(); ++row) {
+    const auto box = box_of(*rows, row, 0);
+    if (!box) return page;  // those without a box are last
+    page.features.push_back(
+        {*box, rows->int8(row, 6), static_cast<std::uint64_t>(rows->int8(row, 7))});
+  }
+  if (rows->size() == at_most) {
+    page.next =
+        to_string({rows->int8(rows->size() - 1, 9), std::string(rows->text(rows->size() - 1, 8))});
+  }
+  return page;
+}
+
+Result<std::vector<std::string>> read_ranked(DatabaseSession& connection, const RankQuery& query,
+                                             std::uint64_t limit) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  const SizeRank below = query.below.value_or(SizeRank{kLargest, INT64_MAX});
+  Parameters parameters;
+  parameters.text(query.collection);
+  for (const double value : query.min) parameters.float8(value);
+  for (const double value : query.max) parameters.float8(value);
+  parameters.float8(query.from.size).int8(query.from.number);
+  parameters.float8(below.size).int8(below.number);
+  parameters.int8(static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage)));
+  // The formula of plane_size(), with the same doubles. PostgreSQL refuses sums that overflow, so
+  // coordinates are brought to kFarthest first.
+  const Result<Rows> rows = connection.run(
+      "SELECT id FROM (SELECT id, greatest(high_x - low_x, high_y - low_y) AS size,"
+      " hashtextextended(id, 0) AS number, (low_x + high_x) / 2 AS x, (low_y + high_y) / 2 AS y"
+      " FROM (SELECT f.id, greatest(least(min_x, 1e18), -1e18) AS low_x,"
+      " greatest(least(min_y, 1e18), -1e18) AS low_y,"
+      " greatest(least(max_x, 1e18), -1e18) AS high_x,"
+      " greatest(least(max_y, 1e18), -1e18) AS high_y FROM watertight.feature_row f"
+      " WHERE f.collection = (SELECT key FROM watertight.collection WHERE name = $1)"
+      " AND min_x IS NOT NULL AND watertight.index_box(min_x, min_y, max_x, max_y)"
+      " && watertight.index_box($2, $3, $4, $5)) AS boxes) AS ranks"
+      " WHERE x >= $2 AND x < $4 AND y >= $3 AND y < $5"
+      " AND (size, number) >= ($6, $7) AND (size, number) < ($8, $9)"
+      " ORDER BY size DESC, number DESC LIMIT $10",
+      parameters);
+  if (!rows) return rows.error();
+  if (rows->size() == 0) {
+    const auto key = key_of_collection(connection, query.collection);
+    if (!key) return key.error();
+  }
+  std::vector<std::string> ids;
+  for (int row = 0; row < rows->size(); ++row) ids.emplace_back(rows->text(row, 0));
+  return ids;
+}
+
 Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit) {

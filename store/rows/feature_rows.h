@@ -110,6 +110,10 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
                                 std::uint64_t limit, const std::string& after,
                                 std::span<const AttributeCondition> where, SharedRows& shared);
+Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& collection,
+                               std::uint64_t limit, const std::string& after);
+Result<std::vector<std::string>> read_ranked(DatabaseSession& connection, const RankQuery& query,
+                                             std::uint64_t limit);
 Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,
                                                  const std::string& collection,
                                                  std::uint64_t limit);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
@@ -215,6 +216,42 @@ class MemoryStore : public SolidStore {
       batch.features.push_back(feature);
     }
     return batch;
+  }
+  static std::int64_t number_of(const std::string& id) {
+    return static_cast<std::int64_t>(std::hash<std::string>()(id) >> 1);
+  }
+  Result<store::PlacedPage> places(const std::string& collection, std::uint64_t /*limit*/,
+                                   const std::string& /*after*/) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (!features_.contains(collection)) return Error{ErrorCode::not_found, "no collection"};
+    store::PlacedPage page;
+    for (const auto& [id, feature] : features_[collection]) {
+      if (feature.box) page.features.push_back({*feature.box, number_of(id), 1});
+    }
+    return page;
+  }
+  Result<std::vector<std::string>> ranked(const store::RankQuery& query,
+                                          std::uint64_t limit) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    std::map<std::pair<double, std::int64_t>, std::string> found;
+    for (const auto& [id, feature] : features_[query.collection]) {
+      if (!feature.box) continue;
+      const std::pair rank{store::plane_size(*feature.box), number_of(id)};
+      bool is_in = rank >= std::pair{query.from.size, query.from.number} &&
+                   (!query.below || rank < std::pair{query.below->size, query.below->number});
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double middle = (feature.box->min[axis] + feature.box->max[axis]) / 2;
+        is_in = is_in && query.min[axis] <= middle && middle < query.max[axis];
+      }
+      if (is_in) found.emplace(rank, id);
+    }
+    std::vector<std::string> ids;
+    for (auto at = found.rbegin(); at != found.rend() && ids.size() < limit; ++at) {
+      ids.push_back(at->second);
+    }
+    return ids;
   }
   Result<std::vector<store::StoredHeader>> documents(const std::string& collection,
                                                      std::uint64_t limit) override {

@@ -230,4 +230,71 @@ TEST_CASE("the documents of a collection are listed, as many as were asked for")
   CHECK(store->documents("buildings", 2)->size() == 2);
 }
 
+TEST_CASE("places are those of all features with a box, page by page") {
+  const Database database;
+  const auto opened = database.store();
+  auto& store = *opened;
+  std::vector<StoredFeature> features;
+  for (int i = 0; i < 25; ++i) features.push_back(at("f" + std::to_string(i), i * 10, 5, 1 + i));
+  features.push_back(sample_feature("none"));
+  features.back().box.reset();
+  REQUIRE(store.put(features));
+  std::string after;
+  std::map<double, std::int64_t> numbers;
+  do {
+    const auto page = store.places("buildings", 7, after);
+    REQUIRE(page);
+    for (const auto& placed : page->features) {
+      CHECK(numbers.emplace(placed.box.min[0], placed.number).second);
+      CHECK(store::plane_size(placed.box) == 1 + placed.box.min[0] / 10);
+      CHECK(placed.bytes > 0);
+    }
+    after = page->next;
+  } while (!after.empty());
+  CHECK(numbers.size() == 25);
+  CHECK_FALSE(store.places("nowhere", 7, ""));
+}
+
+TEST_CASE("ranked features are those of a part of the plane, the largest first") {
+  const Database database;
+  const auto opened = database.store();
+  auto& store = *opened;
+  std::vector<StoredFeature> features;
+  for (int i = 0; i < 20; ++i)
+    features.push_back(at("f" + std::to_string(i), 0, 0, i < 10 ? 2 : 1));
+  features.push_back(at("far", 1000, 1000, 3));
+  features.push_back(at("endless", 1e308, -1e308, 1e307));
+  features.push_back(at("edge", 9.5, 0, 1));  // its middle is on the upper bound
+  REQUIRE(store.put(features));
+  store::RankQuery query{"buildings", {0, 0}, {10, 10}, {0, INT64_MIN}, std::nullopt};
+  const auto all = store.ranked(query, 100);
+  REQUIRE(all);
+  CHECK(all->size() == 20);
+  query.max = {10.25, 10};
+  CHECK(store.ranked(query, 100)->size() == 21);
+  query.max = {10, 10};
+
+  // Cut at any rank, the two parts are all features.
+  std::map<std::int64_t, double> ranks;
+  const auto all_places = store.places("buildings", 100, "");
+  REQUIRE(all_places);
+  for (const auto& placed : all_places->features) {
+    if (placed.box.min[0] == 0) ranks[placed.number] = store::plane_size(placed.box);
+  }
+  REQUIRE(ranks.size() == 20);
+  for (const auto& [number, size] : ranks) {
+    store::RankQuery upper = query;
+    upper.from = {size, number};
+    store::RankQuery lower = query;
+    lower.below = store::SizeRank{size, number};
+    auto joined = *store.ranked(upper, 100);
+    const auto rest = *store.ranked(lower, 100);
+    joined.insert(joined.end(), rest.begin(), rest.end());
+    CHECK(joined == *all);
+  }
+  CHECK(store.ranked(query, 3)->size() == 3);
+  query.collection = "nowhere";
+  CHECK_FALSE(store.ranked(query, 3));
+}
+
 }  // namespace watertight

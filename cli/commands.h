@@ -13,6 +13,7 @@
 #include "cli/rules.h"
 #include "cli/summary.h"
 #include "pipeline/pipeline.h"
+#include "tiles/glb.h"
 
 namespace watertight::cli {
 
@@ -112,6 +113,15 @@ struct ConvertCommand {
   std::string surfaces = "ignore";  // or "as-solids"
 };
 Exit run(const ConvertCommand& command);
+
+struct TilesCommand {
+  std::vector<std::string> files;
+  std::string output;  // a folder that is not there yet
+  std::string lod;     // "" for the highest of each object
+  tiles::Compression compression = tiles::Compression::meshopt;
+  std::size_t jobs = 1;
+};
+Exit run(const TilesCommand& command);
 
 struct AdviseCommand {
   std::string input;

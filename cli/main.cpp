@@ -272,6 +272,24 @@ void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
+void add_tiles(CLI::App& app, TilesCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand(
+      "tiles", "Write documents as a tileset of 3D Tiles 1.1 for web maps, unvalidated");
+  sub->add_option("FILE", command.files,
+                  "documents, also in folders, zip archives and compressed files; one tileset of "
+                  "all")
+      ->required();
+  sub->add_option("-o,--output", command.output, "a new folder for tileset.json and the tiles")
+      ->required();
+  sub->add_option("--lod", command.lod,
+                  "only geometries of this level of detail; default: the highest of each object");
+  sub->add_flag_callback(
+      "--uncompressed", [&] { command.compression = tiles::Compression::none; },
+      "without EXT_meshopt_compression, for programs that cannot read it");
+  add_jobs(*sub, command.jobs, "features triangulated at once");
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
 void add_info(CLI::App& app, InfoCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("info", "Describe a blob or a Watertight file");
   sub->add_option("BLOB", command.input, "file or URL; - for standard input")->required();
@@ -448,6 +466,7 @@ int run_command_line(int argc, char** argv) {
   DecodeCommand decode_command;
   InfoCommand info_command;
   ConvertCommand convert_command;
+  TilesCommand tiles_command;
   GetCommand get_command;
   AppendCommand append_command;
   DeleteCommand delete_command;
@@ -464,6 +483,7 @@ int run_command_line(int argc, char** argv) {
   add_get(app, get_command, chosen);
   add_append(app, append_command, chosen);
   add_delete(app, delete_command, chosen);
+  add_tiles(app, tiles_command, chosen);
   add_info(app, info_command, chosen);
   add_convert(app, convert_command, chosen);
   add_serve(app, serve_command, chosen);

@@ -23,6 +23,7 @@ inline constexpr std::string_view kJsonFg = "application/vnd.ogc.fg+json";
 inline constexpr std::string_view kCityJson = "application/city+json";
 inline constexpr std::string_view kCityJsonSeq = "application/city+json-seq";
 inline constexpr std::string_view kObj = "model/obj";
+inline constexpr std::string_view kGltf = "model/gltf-binary";
 inline constexpr std::string_view kBlob = "application/vnd.watertight.blob";
 inline constexpr std::string_view kContainer = "application/vnd.watertight";
 
@@ -73,6 +74,8 @@ Response delete_item(const RoutedRequest& request);
 Response get_queryables(const RoutedRequest& request);
 Response get_attributes(const RoutedRequest& request);
 Response put_attributes(const RoutedRequest& request);
+Response get_tileset(const RoutedRequest& request);
+Response get_tile(const RoutedRequest& request);
 Response get_export(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
 

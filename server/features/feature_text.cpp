@@ -97,7 +97,8 @@ std::string FeatureForm::name() const {
   return name;
 }
 
-Result<formats::CityFeature> FeatureWriter::read(const Document& document, const std::string& id) {
+Result<formats::CityFeature> FeatureWriter::read_city(const Document& document,
+                                                      const std::string& id) {
   const std::string_view header = document.header;
   auto reader = readers_.find(header);
   if (reader == readers_.end()) {
@@ -111,30 +112,39 @@ Result<formats::CityFeature> FeatureWriter::read(const Document& document, const
   return reader->second.read(*text, id, form_.lod, limits_);
 }
 
-Result<std::string> FeatureWriter::write(StoredFeature stored) {
-  const std::string id = stored.id;
-  const std::string type = stored.type;
-  const std::uint32_t srid = stored.srid;
-  Properties properties = own_properties(stored);
+Result<ShownFeature> FeatureWriter::read(StoredFeature stored) {
+  ShownFeature shown{stored.id, stored.type, stored.srid, {}, own_properties(stored)};
   auto document = pipeline::from_stored(std::move(stored), limits_);
-  if (document && document->format != Format::city_json &&
-      document->format != Format::city_json_seq) {
-    document = formats::as_city_model(*document);
-  }
   if (!document) return damaged(document.error());
-  auto feature = read(*document, id);
-  if (!feature) return damaged(feature.error());
-  const Status brought =
-      feature->is_too_large
-          ? Error{ErrorCode::limit_exceeded, "the geometry has more vertices than are shown"}
-          : bring_into(form_.system, srid, feature->shapes);
-  if (!brought) {
-    feature->shapes = {};
-    properties.emplace_back(std::string(kOwnProperty) + "no_geometry",
-                            json_string(brought.error().message));
+  const bool is_city =
+      document->format == Format::city_json || document->format == Format::city_json_seq;
+  if (!is_city && document->format != Format::gml) {
+    shown.city = formats::city_feature_of(document->features.front());
+    return shown;
   }
-  return form_.is_json_fg ? formats::json_fg_feature(id, type, *feature, properties)
-                          : formats::geo_json_feature(id, *feature, properties);
+  if (!is_city) document = formats::as_city_model(*document);
+  if (!document) return damaged(document.error());
+  auto city = read_city(*document, shown.id);
+  if (!city) return damaged(city.error());
+  shown.city = *std::move(city);
+  return shown;
+}
+
+Result<std::string> FeatureWriter::write(StoredFeature stored) {
+  auto shown = read(std::move(stored));
+  if (!shown) return std::move(shown).error();
+  formats::CityFeature& city = shown->city;
+  const Status brought = city.is_too_large ? Error{ErrorCode::limit_exceeded,
+                                                   "the geometry has more vertices than are shown"}
+                                           : bring_into(form_.system, shown->srid, city.shapes);
+  if (!brought) {
+    city.shapes = {};
+    shown->properties.emplace_back(std::string(kOwnProperty) + "no_geometry",
+                                   json_string(brought.error().message));
+  }
+  return form_.is_json_fg
+             ? formats::json_fg_feature(shown->id, shown->type, city, shown->properties)
+             : formats::geo_json_feature(shown->id, city, shown->properties);
 }
 
 }  // namespace watertight::server

@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "formats/geo_json/city_shapes.h"
 #include "server/features/systems.h"
@@ -35,6 +37,15 @@ bool is_large(const StoredFeature& feature);
 /// The names of the properties that the service adds to the attributes of a feature begin so.
 inline constexpr std::string_view kOwnProperty = "wt_";
 
+/// A stored feature as it is shown, in the storage CRS.
+struct ShownFeature {
+  std::string id;
+  std::string type;
+  std::uint32_t srid = 0;
+  formats::CityFeature city;
+  std::vector<std::pair<std::string, std::string>> properties;  // of the service: name, JSON text
+};
+
 /// Writes stored features as GeoJSON; keeps what features of one document share from one feature to
 /// the next.
 class FeatureWriter {
@@ -45,9 +56,11 @@ class FeatureWriter {
   /// property wt_no_geometry has the reason. Errors: unavailable for a feature that cannot be
   /// decoded.
   Result<std::string> write(StoredFeature stored);
+  /// The feature for another form than text. Errors: as for write().
+  Result<ShownFeature> read(StoredFeature stored);
 
  private:
-  Result<formats::CityFeature> read(const Document& document, const std::string& id);
+  Result<formats::CityFeature> read_city(const Document& document, const std::string& id);
 
   FeatureForm form_;
   Limits limits_;

@@ -14,6 +14,7 @@
 #include "server/items/preconditions.h"
 #include "server/items/ranges.h"
 #include "server/items/representation_cache.h"
+#include "server/scene/stored_mesh.h"
 
 namespace watertight::server {
 namespace {
@@ -23,13 +24,14 @@ struct ItemFormat {
   std::string_view type;
 };
 
-constexpr std::array<ItemFormat, 10> kFormats{{{"cityjson", kCityJson},
+constexpr std::array<ItemFormat, 11> kFormats{{{"cityjson", kCityJson},
                                                {"jsonfg", kJsonFg},
                                                {"html", kHtml},
                                                {"geojson", kGeoJson},
                                                {"json", kJson},
                                                {"cityjsonseq", kCityJsonSeq},
                                                {"obj", kObj},
+                                               {"glb", kGltf},
                                                {"wt", kContainer},
                                                {"blob", kBlob},
                                                {"proof", kJson}}};
@@ -115,6 +117,7 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
     if (!text) return text.error();
     return bytes_of(item_page(item.collection, Json::parse(*text)));
   }
+  if (format == "glb") return glb_of_feature(std::move(feature), item.service.options.limits);
   if (format == "blob") return blob_of(feature, item.solid, item.service.options.limits);
   if (format == "proof") {
     const auto encoded = pipeline::unpack(std::move(feature));
@@ -196,7 +199,7 @@ Response get_item(const RoutedRequest& request) {
         "an item is available as application/city+json (f=cityjson), application/json (f=json), "
         "application/geo+json (f=geojson), application/vnd.ogc.fg+json (f=jsonfg), text/html "
         "(f=html), "
-        "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), "
+        "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), model/gltf-binary (f=glb), "
         "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs "
         "and findings with f=proof");
   }

@@ -35,7 +35,7 @@ using tiles::Frame;
 /// none.
 using Meshed = Result<FeatureMesh>;
 
-ByteSource source_of_bytes(std::shared_ptr<const Bytes> bytes) {
+ByteSource source_of_bytes(const std::shared_ptr<const Bytes>& bytes) {
   return
       [bytes, used = std::size_t{0}](std::span<std::uint8_t> out) mutable -> Result<std::size_t> {
         const std::size_t count = std::min(out.size(), bytes->size() - used);

@@ -10,12 +10,12 @@ for attributes and facets. Exit code 1 after a difference.
 import json
 import os
 import pathlib
-import subprocess
 import sys
 
 PROGRAM, DOCUMENT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/siege"))
+from checks import check, failures, run  # noqa: E402
 from service import Service, temporary_folder  # noqa: E402
 
 DEGREES = 2e-9  # nine decimals, and as much for another version of PROJ
@@ -40,21 +40,6 @@ print("RESULT " + json.dumps({
 del feature, layer  # QGIS crashes if they outlive it
 application.exitQgis()
 """
-
-failures = []
-
-
-def check(is_right, message):
-    print(("ok: " if is_right else "WRONG: ") + message, flush=True)
-    if not is_right:
-        failures.append(message)
-
-
-def run(*words, **options):
-    done = subprocess.run(words, capture_output=True, text=True, timeout=300, check=False, **options)
-    if done.returncode != 0:
-        raise SystemExit(f"{words[0]} failed: {done.stderr[-2000:]} {done.stdout[-500:]}")
-    return done.stdout
 
 
 class Expected:

@@ -22,25 +22,11 @@ PROGRAM, DOCUMENT = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).reso
 NODE, OTHERS = pathlib.Path(sys.argv[3]).resolve(), sys.argv[4:]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/siege"))
+from checks import check, failures, run  # noqa: E402
 from service import Service, temporary_folder  # noqa: E402
 
 METRES = 0.02  # the rounding to 1/1024 m, and another version of PROJ
 SHARE = 0.002  # of an area: facets that are not flat have several triangulations
-
-failures = []
-
-
-def check(is_right, message):
-    print(("ok: " if is_right else "WRONG: ") + message, flush=True)
-    if not is_right:
-        failures.append(message)
-
-
-def run(*words, **options):
-    done = subprocess.run(words, capture_output=True, text=True, timeout=300, check=False, **options)
-    if done.returncode != 0:
-        raise SystemExit(f"{words[0]} failed: {done.stderr[-2000:]} {done.stdout[-500:]}")
-    return done.stdout
 
 
 def cross(a, b):

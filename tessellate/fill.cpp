@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Constrained_triangulation_face_base_2.h>
@@ -79,33 +80,23 @@ struct FitPlane {
   }
 };
 
-struct Edge {
-  std::array<double, 2> low{};
-  std::array<double, 2> high{};
-};
-
-/// The number of pairs of edges whose boxes meet in the projection, counted up to `most` + 1.
-std::uint64_t meeting_pairs(const Solid& solid, IndexRange rings, int axis, std::uint64_t most) {
-  std::vector<Edge> edges;
+/// The number of pairs of edges that overlap along one axis of the projection, counted up to `most`
+/// + 1.
+std::uint64_t overlapping_pairs(const Solid& solid, IndexRange rings, int axis,
+                                std::uint64_t most) {
+  const int along = (axis + 1) % 3;
+  std::vector<std::pair<double, double>> edges;  // where they begin and end
   for (Index r = rings.begin; r < rings.end; ++r) {
     const std::span<const Index> ring = solid.ring(r);
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point& a = solid.vertices()[ring[i]];
-      const Point& b = solid.vertices()[ring[(i + 1) % ring.size()]];
-      Edge edge;
-      for (int k = 0; k < 2; ++k) {
-        const int on = (axis + 1 + k) % 3;
-        edge.low[static_cast<std::size_t>(k)] = std::min(a[on], b[on]);
-        edge.high[static_cast<std::size_t>(k)] = std::max(a[on], b[on]);
-      }
-      edges.push_back(edge);
+      edges.push_back(std::minmax({solid.vertices()[ring[i]][along],
+                                   solid.vertices()[ring[(i + 1) % ring.size()]][along]}));
     }
   }
-  std::sort(edges.begin(), edges.end(),
-            [](const Edge& a, const Edge& b) { return a.low[0] < b.low[0]; });
+  std::sort(edges.begin(), edges.end());
   std::uint64_t pairs = 0;
   for (std::size_t i = 0; i < edges.size() && pairs <= most; ++i) {
-    for (std::size_t k = i + 1; k < edges.size() && edges[k].low[0] <= edges[i].high[0]; ++k) {
+    for (std::size_t k = i + 1; k < edges.size() && edges[k].first <= edges[i].second; ++k) {
       if (++pairs > most) break;
     }
   }
@@ -172,7 +163,7 @@ std::optional<FilledFacet> fill_facet(const Solid& solid, Index facet, std::uint
   const std::span<const Index> exterior = solid.ring(rings.begin);
   const FitPlane fit = FitPlane::of(solid, exterior);
   if (fit.normal[fit.axis] == 0) return FilledFacet{};
-  const std::uint64_t own = meeting_pairs(solid, rings, fit.axis, pairs);
+  const std::uint64_t own = overlapping_pairs(solid, rings, fit.axis, pairs);
   if (own > pairs) {
     pairs = 0;
     return std::nullopt;

@@ -21,7 +21,7 @@ using FilledFacet = std::vector<std::array<Point, 3>>;
 /// thinnest. Vertices stay; where edges cross, the corner is on the plane through three vertices
 /// that are far from each other. Triangles turn as the exterior ring does where it has a turn. A
 /// facet on one line has none. `pairs` is the number of pairs of edges that may still be looked at
-/// and decreases; nothing, and no further work, when the facet has more of them whose boxes meet.
+/// and decreases; nothing, and no further work, when more of the facet overlap along one axis.
 /// Cost: quadratic in the edges of the facet in the worst case.
 std::optional<FilledFacet> fill_facet(const Solid& solid, Index facet, std::uint64_t& pairs);
 

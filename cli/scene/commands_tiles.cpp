@@ -31,32 +31,11 @@ namespace fs = std::filesystem;
 using tiles::FeatureMesh;
 using tiles::Frame;
 
-/// A feature that was read and triangulated; its positions are not in the frame yet if there was
-/// none.
+/// A feature as triangles, or why there are none.
 using Meshed = Result<FeatureMesh>;
-
-ByteSource source_of_bytes(const std::shared_ptr<const Bytes>& bytes) {
-  return
-      [bytes, used = std::size_t{0}](std::span<std::uint8_t> out) mutable -> Result<std::size_t> {
-        const std::size_t count = std::min(out.size(), bytes->size() - used);
-        std::copy_n(bytes->begin() + static_cast<std::ptrdiff_t>(used), count, out.begin());
-        used += count;
-        return count;
-      };
-}
 
 bool is_city_model(Format format) {
   return format == Format::city_json || format == Format::city_json_seq;
-}
-
-/// A reader of a city model in memory, feature by feature.
-Result<formats::FeatureReader> reader_of(const Document& city) {
-  auto bytes = formats::write_document(city, Format::city_json);
-  if (!bytes) return std::move(bytes).error();
-  formats::ReadOptions options;
-  options.limits.bytes = ~0ULL;
-  return formats::FeatureReader::open(
-      source_of_bytes(std::make_shared<const Bytes>(*std::move(bytes))), "x.city.json", options);
 }
 
 /// Opens an input feature by feature. GML becomes a city model with all its surfaces.
@@ -69,9 +48,9 @@ Result<formats::FeatureReader> open_features(const InputFile& input) {
   const auto whole = read_whole(input, {});
   if (!whole) return whole.error();
   if (kind_of_input(whole->bytes) != InputKind::document) return std::move(opened->reader);
-  const auto city = formats::city_model_of_gml(whole->bytes, {});
-  if (!city) return city.error();
-  return reader_of(city->model);
+  auto city = formats::city_model_of_gml(whole->bytes, {});
+  if (!city) return std::move(city).error();
+  return formats::FeatureReader::of(std::move(city->model));
 }
 
 /// The features of all documents, as triangles in one frame.

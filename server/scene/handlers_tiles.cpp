@@ -125,7 +125,8 @@ tiles::Frame frame_at(std::uint32_t srid, const std::array<double, 2>& place) {
 Result<tiles::TileBox> box_in_frame(std::uint32_t srid, const tiles::Frame& frame,
                                     const tiles::TileBox& box) {
   constexpr int kSteps = 4;
-  constexpr double kCurvature = 1e-8;  // metres for a square metre; 2^-7 / radius is a tenth of it
+  constexpr double kCurvature =
+      1e-8;  // metres for a square metre; 2^-7 / radius is an eighth of it
   std::vector<tiles::Frame::Position> points;
   for (int x = 0; x <= kSteps; ++x) {
     for (int y = 0; y <= kSteps; ++y) {

@@ -144,8 +144,19 @@ struct ServeCommand {
   std::string cors;      // whose web pages may read, "" for none but the service's own
   std::optional<std::size_t> connections_per_address;
   bool requires_preconditions = false;
+  std::string keys_file;           // "" for none
+  bool is_open = false;            // nobody needs a key, though other machines reach the address
+  bool reading_is_public = false;  // with keys_file
 };
 Exit run(const ServeCommand& command);
+
+struct KeyCommand {
+  std::string name;
+  std::string scope;
+  std::string file;
+};
+/// Makes an access key, adds its digest to a file and prints it.
+Exit run(const KeyCommand& command);
 
 struct IngestCommand {
   StoreChoice store;

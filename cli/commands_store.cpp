@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The commands serve and export.
+// The command export.
 #include <unistd.h>
 
-#include <charconv>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -17,93 +16,8 @@
 #include "cli/terminal/printable.h"
 #include "pipeline/export.h"
 #include "pipeline/stored/attributes.h"
-#include "server/features/cors.h"
-#include "server/features/links.h"
-#include "server/serve.h"
 
 namespace watertight::cli {
-namespace {
-
-bool is_loopback(const std::string& address) {
-  return address.starts_with("127.") || address == "::1";
-}
-
-/// The limits of one client's address: four connections for each request that it has in work.
-void limit_addresses(const ServeCommand& command, server::ServerOptions& options) {
-  constexpr std::size_t kUsual = 128;
-  options.connections_per_address =
-      command.connections_per_address.value_or(is_loopback(options.address) ? 0 : kUsual);
-  options.works_per_address = (options.connections_per_address + 3) / 4;
-}
-
-/// Reads "127.0.0.1:8080", "[::1]:8080" or ":8080".
-Status read_listen(const std::string& text, server::ServerOptions& options) {
-  const Error wrong{ErrorCode::invalid_argument,
-                    "'" + text + "' is not ADDRESS:PORT (example: 127.0.0.1:8080)"};
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos) return wrong;
-  std::string address = text.substr(0, colon);
-  if (address.starts_with('[') && address.ends_with(']')) {
-    address = address.substr(1, address.size() - 2);
-  }
-  if (!address.empty()) options.address = address;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, options.port);
-  return error == std::errc{} && rest == end ? Status(Done{}) : Status(wrong);
-}
-
-}  // namespace
-
-Exit run(const ServeCommand& command) {
-  server::ServeOptions options;
-  const Status status = read_listen(command.listen, options.server);
-  if (!status) {
-    complain("--listen", status.error());
-    return Exit::error;
-  }
-  const auto fail = [](const std::string& what, const Error& error) {
-    complain(what, error);
-    // A service that was stopped before it listened has done what it was told.
-    return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
-  };
-  if (!command.base_url.empty()) {
-    if (const Status checked = server::check_base_url(command.base_url); !checked) {
-      complain("--base-url", checked.error());
-      return Exit::error;
-    }
-    options.base_url = command.base_url;
-    while (options.base_url.ends_with('/')) options.base_url.pop_back();
-  }
-  if (!command.cors.empty()) {
-    if (const Status checked = server::check_origin(command.cors); !checked) {
-      complain("--cors", checked.error());
-      return Exit::error;
-    }
-    options.cors_origin = command.cors;
-  }
-  limit_addresses(command, options.server);
-  options.requires_preconditions = command.requires_preconditions;
-  if (!command.probes.empty()) {
-    const Status read = read_listen(command.probes, options.probes.emplace());
-    if (!read) {
-      complain("--probes", read.error());
-      return Exit::error;
-    }
-  }
-  if (const Status given_up = give_up_rights(command.store); !given_up) {
-    return fail("store", given_up.error());
-  }
-  server::StopSignals signals;
-  auto opened = open_database(command.store, signals);
-  if (!opened) return fail("store", opened.error());
-  options.connection = opened->connection;
-  if (opened->cluster) {
-    options.database_health = [&opened] { return opened->cluster->health(); };
-  }
-  const Status served = server::serve(options, signals);
-  return served ? Exit::valid : fail("serve", served.error());
-}
-
 namespace {
 
 /// A run of `watertight export`: one file, or one for each sequence that the collection needs.

@@ -304,6 +304,18 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   sub->add_option("--listen", command.listen, "ADDRESS:PORT")->capture_default_str();
   sub->add_option("--probes", command.probes,
                   "ADDRESS:PORT that answers /healthz and /readyz only, whatever the clients do");
+  auto* keys = sub->add_option("--keys", command.keys_file,
+                               "file of access keys, made by 'watertight key'; read again when it "
+                               "changes")
+                   ->envname("WATERTIGHT_KEYS");
+  sub->add_flag("--public-read", command.reading_is_public, "with --keys: reading needs no key")
+      ->needs(keys)
+      ->envname("WATERTIGHT_PUBLIC_READ");
+  sub->add_flag("--open", command.is_open,
+                "needed to listen on an address of a network without --keys: who reaches it may "
+                "change everything")
+      ->excludes(keys)
+      ->envname("WATERTIGHT_OPEN");
   sub->add_option("--connections-per-address", command.connections_per_address,
                   "the most connections of one client's address; 0 for no limit (default: 128, and "
                   "no limit on a loopback address, where a proxy may speak for many)");
@@ -318,6 +330,19 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
     require_store(command.store);
     chosen = [&] { return run(command); };
   });
+}
+
+void add_key(CLI::App& app, KeyCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand("key", "Make an access key for clients of the service");
+  sub->add_option("NAME", command.name, "who will use it, for the log")->required();
+  sub->add_option("--scope", command.scope,
+                  "read; write (also change features); admin (also change collections)")
+      ->required()
+      ->check(CLI::IsMember({"read", "write", "admin"}));
+  sub->add_option("--keys", command.file, "file of keys to which its digest is added")
+      ->required()
+      ->envname("WATERTIGHT_KEYS");
+  sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
 std::string is_collection_id(const std::string& id) {
@@ -471,6 +496,7 @@ int run_command_line(int argc, char** argv) {
   AppendCommand append_command;
   DeleteCommand delete_command;
   ServeCommand serve_command;
+  KeyCommand key_command;
   IngestCommand ingest_command;
   ExportCommand export_command;
   CollectionsCommand collections_command;
@@ -487,6 +513,7 @@ int run_command_line(int argc, char** argv) {
   add_info(app, info_command, chosen);
   add_convert(app, convert_command, chosen);
   add_serve(app, serve_command, chosen);
+  add_key(app, key_command, chosen);
   add_ingest(app, ingest_command, chosen);
   add_export(app, export_command, chosen);
   add_collections(app, collections_command, chosen);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/cancel.h"
+#include "server/access/keys.h"
 #include "server/problem.h"
 #include "server/routes.h"
 
@@ -43,8 +44,9 @@ using Handler = Response (*)(const RoutedRequest&);
 struct Route {
   std::string_view method;
   std::string_view path;  // "/collections/{collectionId}": as in the OpenAPI document
-  Lane lane;  // POST requests of the computing lane with at most kSmallBody bytes, which are not
-              // compressed, go to the small one
+  Lane lane;    // POST requests of the computing lane with at most kSmallBody bytes, which are not
+                // compressed, go to the small one
+  Scope scope;  // of the key that a request needs, where keys are needed
   Handler handler;
   std::vector<std::string_view> parameters;  // the query parameters that the route knows
   bool has_attributes = false;               // others are names of attributes

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/container.h"
+#include "server/access/gate.h"
 #include "server/features/cors.h"
 #include "server/handlers.h"
 
@@ -89,51 +90,82 @@ Response unrouted(const Request& request, const Target& target) {
 
 const std::vector<Route>& routes() {
   static const std::vector<Route> table{
-      {"GET", "/", Lane::quick, get_landing, {"f"}},
-      {"GET", "/api", Lane::quick, get_api, {"f"}},
-      {"GET", "/conformance", Lane::quick, get_conformance, {"f"}},
-      {"GET", "/healthz", Lane::quick, get_health, {}},
-      {"GET", "/readyz", Lane::quick, get_readiness, {}},
-      {"GET", "/collections", Lane::reading, get_collections, {"f", "limit", "after"}},
-      {"GET", "/collections/{collectionId}", Lane::reading, get_collection, {"f"}},
-      {"PATCH", "/collections/{collectionId}", Lane::small, patch_collection, {}},
-      {"DELETE", "/collections/{collectionId}", Lane::small, delete_collection, {}},
-      {"POST", "/collections/{collectionId}/recount", Lane::small, post_recount, {}},
-      {"GET", "/collections/{collectionId}/queryables", Lane::reading, get_queryables, {"f"}},
-      {"GET", "/collections/{collectionId}/attributes", Lane::reading, get_attributes, {"f"}},
-      {"PUT", "/collections/{collectionId}/attributes", Lane::small, put_attributes, {}},
+      {"GET", "/", Lane::quick, Scope::read, get_landing, {"f"}},
+      {"GET", "/api", Lane::quick, Scope::read, get_api, {"f"}},
+      {"GET", "/conformance", Lane::quick, Scope::read, get_conformance, {"f"}},
+      {"GET", "/healthz", Lane::quick, Scope::none, get_health, {}},
+      {"GET", "/readyz", Lane::quick, Scope::none, get_readiness, {}},
+      {"GET", "/collections", Lane::reading, Scope::read, get_collections, {"f", "limit", "after"}},
+      {"GET", "/collections/{collectionId}", Lane::reading, Scope::read, get_collection, {"f"}},
+      {"PATCH", "/collections/{collectionId}", Lane::small, Scope::admin, patch_collection, {}},
+      {"DELETE", "/collections/{collectionId}", Lane::small, Scope::admin, delete_collection, {}},
+      {"POST", "/collections/{collectionId}/recount", Lane::small, Scope::write, post_recount, {}},
+      {"GET",
+       "/collections/{collectionId}/queryables",
+       Lane::reading,
+       Scope::read,
+       get_queryables,
+       {"f"}},
+      {"GET",
+       "/collections/{collectionId}/attributes",
+       Lane::reading,
+       Scope::read,
+       get_attributes,
+       {"f"}},
+      {"PUT",
+       "/collections/{collectionId}/attributes",
+       Lane::small,
+       Scope::write,
+       put_attributes,
+       {}},
       {"GET",
        "/collections/{collectionId}/items",
        Lane::reading,
+       Scope::read,
        get_items,
        {std::begin(kItemParameters), std::end(kItemParameters)},
        true},
       {"POST",
        "/collections/{collectionId}/items",
        Lane::computing,
+       Scope::write,
        post_items,
        {"f", "invalid", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps",
         "proof", "strict"}},
       {"GET",
        "/collections/{collectionId}/items/{itemId}",
        Lane::reading,
+       Scope::read,
        get_item,
        {"f", "solid", "crs", "lod"}},
-      {"DELETE", "/collections/{collectionId}/items/{itemId}", Lane::small, delete_item, {}},
+      {"DELETE",
+       "/collections/{collectionId}/items/{itemId}",
+       Lane::small,
+       Scope::write,
+       delete_item,
+       {}},
       {"GET",
        "/collections/{collectionId}/export",
        Lane::computing,
+       Scope::read,
        get_export,
        {"f", "proven", "part"}},
-      {"GET", "/collections/{collectionId}/3dtiles", Lane::computing, get_tileset, {"compression"}},
+      {"GET",
+       "/collections/{collectionId}/3dtiles",
+       Lane::computing,
+       Scope::read,
+       get_tileset,
+       {"compression"}},
       {"GET",
        "/collections/{collectionId}/3dtiles/content",
        Lane::computing,
+       Scope::read,
        get_tile,
        {"frame", "origin", "bounds", "from", "below", "compression"}},
       {"POST",
        "/validate",
        Lane::computing,
+       Scope::read,
        post_validate,
        {"f", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps", "proof",
         "strict"}},
@@ -160,6 +192,19 @@ Lane lane_of(const Request& request, std::uint64_t body_bytes) {
 
 namespace {
 
+/// The scope that a request needs where keys are needed. That of an unknown path or method is read,
+/// so that only who has a key learns what there is. The question of a browser whether a page may
+/// ask (OPTIONS) never has a key.
+Scope scope_of(const Request& request) {
+  if (request.method == "OPTIONS") return Scope::none;
+  const auto target = parse_target(request.target);
+  if (!target) return Scope::read;
+  for (const Route& route : routes()) {
+    if (route.method == effective_method(request) && matches(route, *target)) return route.scope;
+  }
+  return Scope::read;
+}
+
 Response routed(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
   // The service as a whole (RFC 9110, section 9.3.7).
   if (request.method == "OPTIONS" && request.target == "*") {
@@ -183,10 +228,22 @@ Response respond(const Service& service, const Request& request, const CancelPol
                             routed(service, request, is_cancelled));
 }
 
+Admission admit(const Service& service, const Request& request) {
+  if (service.gate == nullptr) return {};
+  Admission admission = service.gate->admit(request, scope_of(request));
+  if (admission.refusal) {
+    admission.refusal =
+        with_leave_to_read(service.options.cors_origin, request, *std::move(admission.refusal));
+  }
+  return admission;
+}
+
 Application make_application(const Service& service) {
-  return Application{lane_of, [service](const Request& request, const CancelPoll& is_cancelled) {
+  return Application{lane_of,
+                     [service](const Request& request, const CancelPoll& is_cancelled) {
                        return respond(service, request, is_cancelled);
-                     }};
+                     },
+                     [service](const Request& request) { return admit(service, request); }};
 }
 
 Application probe_application(const Service& service) {

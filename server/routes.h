@@ -18,6 +18,7 @@ namespace watertight::server {
 
 class Budget;
 class ExportFiles;
+class Gate;
 class RepresentationCache;
 
 struct RouteOptions {
@@ -45,7 +46,12 @@ struct Service {
   ExportFiles* export_files = nullptr;
   /// The memory for documents that are read whole, bytes. Null: no limit. Outlives the service.
   Budget* document_memory = nullptr;
+  /// The keys of clients. Null: everybody may do everything. Outlives the service.
+  const Gate* gate = nullptr;
 };
+
+/// Whether a request may be answered, by its key.
+Admission admit(const Service& service, const Request& request);
 
 /// Answers a request. Never fails: every error is an application/problem+json answer.
 Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled);

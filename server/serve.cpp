@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "pipeline/stored/attributes.h"
+#include "server/access/gate.h"
 #include "server/budget.h"
 #include "server/export_files.h"
 #include "server/items/representation_cache.h"
@@ -104,6 +105,15 @@ class ReadinessMonitor {
   std::thread thread_;
 };
 
+/// Reads keys that have changed, and says so.
+void log_refresh(Gate& gate, spdlog::logger& logger) {
+  const auto refreshed = gate.refresh();
+  if (refreshed && *refreshed) logger.info("event=keys-read");
+  if (!refreshed) {
+    logger.error("event=keys-wrong kept=old error=\"" + to_string(refreshed.error()) + "\"");
+  }
+}
+
 std::string url_of(const ServerOptions& options, std::uint16_t port) {
   const bool is_v6 = options.address.find(':') != std::string::npos;
   return "http://" + (is_v6 ? "[" + options.address + "]" : options.address) + ":" +
@@ -172,11 +182,24 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
       pipeline::read_attributes);
   if (is_stopping()) return Error{ErrorCode::cancelled, "stopped before the service listened"};
   if (!store) return std::move(store).error();
+  const auto logger = make_logger();
+  std::unique_ptr<Gate> gate;
+  if (!options.keys_file.empty()) {
+    auto opened =
+        Gate::open(options.keys_file, options.reading_is_public ? Scope::read : Scope::none);
+    if (!opened) {
+      Error error = std::move(opened).error();
+      error.message.insert(0, "the keys in " + options.keys_file + ": ");
+      return error;
+    }
+    gate = *std::move(opened);
+  }
   delaunay::EngineWorkers workers;
   ExportFiles export_files;
   ReadinessMonitor monitor(**store, [&] {
     workers.reap();  // helper processes that ended
     export_files.forget_old();
+    if (gate) log_refresh(*gate, *logger);
   });
   const auto readiness = [&options, &monitor] {
     Status health = options.database_health ? options.database_health() : Done{};
@@ -189,7 +212,7 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   service.options.requires_preconditions = options.requires_preconditions;
   service.options.base_url = options.base_url;
   service.options.cors_origin = options.cors_origin;
-  const auto logger = make_logger();
+  service.gate = gate.get();
   const LogLine log = [logger](const std::string& line) { logger->info(line); };
   std::unique_ptr<HttpServer> probes;
   if (options.probes) {

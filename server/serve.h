@@ -26,6 +26,8 @@ struct ServeOptions {
   std::optional<ServerOptions> probes = {};
   std::string base_url;                        // RouteOptions::base_url
   std::string cors_origin;                     // RouteOptions::cors_origin
+  std::string keys_file;                       // of Gate::open(); "" = nobody needs a key
+  bool reading_is_public = false;              // with keys_file: reading needs no key
   bool requires_preconditions = false;         // with every write of features
   std::uint64_t document_memory = 4ULL << 30;  // of the documents that are read whole, bytes
   std::size_t cache_bytes = 64ULL << 20;       // of the answers for items that are kept
@@ -73,8 +75,8 @@ class StopSignals {
 
 /// Runs the service and blocks until it has stopped gracefully. Prints "listening on
 /// http://ADDRESS:PORT" on standard output when requests are taken, and log lines on standard
-/// error. Errors: unavailable (database, address), invalid_argument, cancelled (a signal came
-/// before it listened).
+/// error. Errors: unavailable (database, address), invalid_argument, those of Gate::open(),
+/// cancelled (a signal came before it listened).
 Status serve(const ServeOptions& options, StopSignals& signals);
 
 /// Writes a line to standard error unless that would have to wait for its reader.

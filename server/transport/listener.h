@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/cancel.h"
@@ -16,12 +17,20 @@
 
 namespace watertight::server {
 
+/// Whether a request goes on, and by whose right.
+struct Admission {
+  std::string key;  // the name of the access key, for the log; "" = none
+  std::optional<Response> refusal = std::nullopt;
+};
+
 /// The functions that answer requests. Several threads call both at once.
 struct Application {
   /// Chooses the threads for a request whose body has so many bytes. A body above 64 KiB is not yet
   /// in the request, and a quick request never gets it.
   std::function<Lane(const Request&, std::uint64_t body_bytes)> lane;
   std::function<Response(const Request&, const CancelPoll&)> respond;
+  /// Asked at once when a header has come, before the body is read. Null: all requests go on.
+  std::function<Admission(const Request&)> admit = nullptr;
   /// Called when a stop has waited long enough: what respond() is doing should fail soon.
   std::function<void()> interrupt = nullptr;
 };

@@ -171,6 +171,7 @@ class Session {
   beast::flat_buffer buffer_;
   std::string method_;
   std::string target_;
+  std::string key_;                        // the name of the access key, for the log
   std::string note_;                       // of the answer, for the log
   ReceivedBody body_;                      // of the request, until the request has it
   std::optional<BudgetShare> body_share_;  // held from the header to the answer
@@ -232,6 +233,11 @@ awaitable<std::optional<Response>> Session::receive(RequestParser& parser) {
   if (error) co_return answer_to(error, options_).value_or(silence);
   auto refusal = refusal_of(parser, options_);
   if (refusal) co_return refusal;
+  if (environment_.application.admit) {
+    Admission admission = environment_.application.admit(to_request(parser));
+    key_ = std::move(admission.key);
+    if (admission.refusal) co_return std::move(admission.refusal);
+  }
   if (lower_case(std::string(parser.get()[http::field::expect])) == "100-continue" &&
       buffer_.size() == 0 && !parser.is_done()) {
     const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -542,8 +548,10 @@ void Session::log_answer(unsigned status, std::uint64_t bytes, Clock::time_point
   environment_.log("event=request peer=" + connection_->peer + " method=" + quoted(method_) +
                    " target=" + quoted(target_) + " status=" + std::to_string(status) +
                    " bytes=" + std::to_string(bytes) + " ms=" + std::to_string(milliseconds) +
+                   (key_.empty() ? std::string() : " key=" + quoted(key_)) +
                    (note_.empty() ? std::string() : " note=" + quoted(note_)) +
                    (sent ? std::string() : " cut-off=" + quoted(to_string(sent.error()))));
+  key_.clear();
   note_.clear();
 }
 

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The commands serve, which runs the service, and key, which makes keys for its clients.
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/inputs.h"
+#include "cli/opened_store.h"
+#include "cli/terminal/printable.h"
+#include "server/access/keys.h"
+#include "server/features/cors.h"
+#include "server/features/links.h"
+#include "server/serve.h"
+
+namespace watertight::cli {
+namespace {
+
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
+/// The limits of one client's address: four connections for each request that it has in work.
+void limit_addresses(const ServeCommand& command, server::ServerOptions& options) {
+  constexpr std::size_t kUsual = 128;
+  options.connections_per_address =
+      command.connections_per_address.value_or(is_loopback(options.address) ? 0 : kUsual);
+  options.works_per_address = (options.connections_per_address + 3) / 4;
+}
+
+/// Reads "127.0.0.1:8080", "[::1]:8080" or ":8080".
+Status read_listen(const std::string& text, server::ServerOptions& options) {
+  const Error wrong{ErrorCode::invalid_argument,
+                    "'" + text + "' is not ADDRESS:PORT (example: 127.0.0.1:8080)"};
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return wrong;
+  std::string address = text.substr(0, colon);
+  if (address.starts_with('[') && address.ends_with(']')) {
+    address = address.substr(1, address.size() - 2);
+  }
+  if (!address.empty()) options.address = address;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, options.port);
+  return error == std::errc{} && rest == end ? Status(Done{}) : Status(wrong);
+}
+
+}  // namespace
+
+Exit run(const ServeCommand& command) {
+  server::ServeOptions options;
+  const Status status = read_listen(command.listen, options.server);
+  if (!status) {
+    complain("--listen", status.error());
+    return Exit::error;
+  }
+  if (command.keys_file.empty() && !command.is_open && !is_loopback(options.server.address)) {
+    complain("--listen",
+             {ErrorCode::invalid_argument,
+              "at " + options.server.address +
+                  " other machines could change everything: name a file of keys (--keys FILE, "
+                  "which 'watertight key' makes), or give --open if nobody else reaches it"});
+    return Exit::error;
+  }
+  options.keys_file = command.keys_file;
+  options.reading_is_public = command.reading_is_public;
+  const auto fail = [](const std::string& what, const Error& error) {
+    complain(what, error);
+    // A service that was stopped before it listened has done what it was told.
+    return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
+  };
+  if (!command.base_url.empty()) {
+    if (const Status checked = server::check_base_url(command.base_url); !checked) {
+      complain("--base-url", checked.error());
+      return Exit::error;
+    }
+    options.base_url = command.base_url;
+    while (options.base_url.ends_with('/')) options.base_url.pop_back();
+  }
+  if (!command.cors.empty()) {
+    if (const Status checked = server::check_origin(command.cors); !checked) {
+      complain("--cors", checked.error());
+      return Exit::error;
+    }
+    options.cors_origin = command.cors;
+  }
+  limit_addresses(command, options.server);
+  options.requires_preconditions = command.requires_preconditions;
+  if (!command.probes.empty()) {
+    const Status read = read_listen(command.probes, options.probes.emplace());
+    if (!read) {
+      complain("--probes", read.error());
+      return Exit::error;
+    }
+  }
+  if (const Status given_up = give_up_rights(command.store); !given_up) {
+    return fail("store", given_up.error());
+  }
+  server::StopSignals signals;
+  auto opened = open_database(command.store, signals);
+  if (!opened) return fail("store", opened.error());
+  options.connection = opened->connection;
+  if (opened->cluster) {
+    options.database_health = [&opened] { return opened->cluster->health(); };
+  }
+  const Status served = server::serve(options, signals);
+  return served ? Exit::valid : fail("serve", served.error());
+}
+
+Exit run(const KeyCommand& command) {
+  const auto fail = [&command](const Error& error) {
+    complain(command.file, error);
+    return Exit::error;
+  };
+  // The file is read first, so that no key is added to a file that is none of keys.
+  std::string text;
+  if (std::ifstream file(command.file, std::ios::binary); file) {
+    text.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  const auto keys = server::read_keys(text);
+  if (!keys) return fail(keys.error());
+  for (const server::AccessKey& key : *keys) {
+    if (key.name != command.name) continue;
+    return fail({ErrorCode::conflict, "there is a key with the name '" + key.name +
+                                          "'; delete its line to take it back"});
+  }
+  const auto made = server::make_key(command.name, *server::scope_named(command.scope));
+  if (!made) return fail(made.error());
+  std::ofstream file(command.file, std::ios::binary | std::ios::app);
+  if (!text.empty() && !text.ends_with('\n')) file << '\n';
+  file << made->line << '\n';
+  file.close();
+  if (!file) return fail({ErrorCode::unavailable, "the file cannot be written"});
+  std::printf("%s\n", made->key.c_str());
+  return Exit::valid;
+}
+
+}  // namespace watertight::cli

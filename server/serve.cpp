@@ -105,6 +105,17 @@ class ReadinessMonitor {
   std::thread thread_;
 };
 
+/// The gate of the options; null if nobody needs a key. Errors: those of Gate::open().
+Result<std::unique_ptr<Gate>> open_gate(const ServeOptions& options) {
+  if (options.keys_file.empty()) return std::unique_ptr<Gate>();
+  auto opened =
+      Gate::open(options.keys_file, options.reading_is_public ? Scope::read : Scope::none);
+  if (opened) return opened;
+  Error error = std::move(opened).error();
+  error.message.insert(0, "the keys in " + options.keys_file + ": ");
+  return error;
+}
+
 /// Reads keys that have changed, and says so.
 void log_refresh(Gate& gate, spdlog::logger& logger) {
   const auto refreshed = gate.refresh();
@@ -183,23 +194,15 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   if (is_stopping()) return Error{ErrorCode::cancelled, "stopped before the service listened"};
   if (!store) return std::move(store).error();
   const auto logger = make_logger();
-  std::unique_ptr<Gate> gate;
-  if (!options.keys_file.empty()) {
-    auto opened =
-        Gate::open(options.keys_file, options.reading_is_public ? Scope::read : Scope::none);
-    if (!opened) {
-      Error error = std::move(opened).error();
-      error.message.insert(0, "the keys in " + options.keys_file + ": ");
-      return error;
-    }
-    gate = *std::move(opened);
-  }
+  const auto opened = open_gate(options);
+  if (!opened) return opened.error();
+  Gate* const gate = opened->get();
   delaunay::EngineWorkers workers;
   ExportFiles export_files;
   ReadinessMonitor monitor(**store, [&] {
     workers.reap();  // helper processes that ended
     export_files.forget_old();
-    if (gate) log_refresh(*gate, *logger);
+    if (gate != nullptr) log_refresh(*gate, *logger);
   });
   const auto readiness = [&options, &monitor] {
     Status health = options.database_health ? options.database_health() : Done{};
@@ -212,7 +215,7 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   service.options.requires_preconditions = options.requires_preconditions;
   service.options.base_url = options.base_url;
   service.options.cors_origin = options.cors_origin;
-  service.gate = gate.get();
+  service.gate = gate;
   const LogLine log = [logger](const std::string& line) { logger->info(line); };
   std::unique_ptr<HttpServer> probes;
   if (options.probes) {

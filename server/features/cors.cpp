@@ -16,8 +16,8 @@ void add_leave(const std::string& allowed, bool is_preflight, Response& response
   if (allowed != "*") response.headers.push_back({"Vary", "Origin"});
   if (!is_preflight) return;
   response.headers.push_back({"Access-Control-Allow-Methods", "GET, HEAD"});
-  response.headers.push_back(
-      {"Access-Control-Allow-Headers", "Accept, Authorization, If-Match, If-None-Match, If-Range, Range"});
+  response.headers.push_back({"Access-Control-Allow-Headers",
+                              "Accept, Authorization, If-Match, If-None-Match, If-Range, Range"});
   response.headers.push_back({"Access-Control-Max-Age", "3600"});
 }
 

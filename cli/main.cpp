@@ -302,8 +302,9 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("serve", "Run the HTTP service until SIGTERM or SIGINT");
   add_store(*sub, command.store);
   sub->add_option("--listen", command.listen, "ADDRESS:PORT")->capture_default_str();
-  sub->add_option("--probes", command.probes,
-                  "ADDRESS:PORT that answers /healthz and /readyz only, whatever the clients do");
+  sub->add_option(
+      "--probes", command.probes,
+      "ADDRESS:PORT that answers /healthz, /readyz and /metrics only, whatever the clients do");
   auto* keys = sub->add_option("--keys", command.keys_file,
                                "file of access keys, made by 'watertight key'; read again when it "
                                "changes")

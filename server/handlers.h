@@ -64,6 +64,7 @@ Response get_conformance(const RoutedRequest& request);
 Response get_api(const RoutedRequest& request);
 Response get_health(const RoutedRequest& request);
 Response get_readiness(const RoutedRequest& request);
+Response get_metrics(const RoutedRequest& request);
 Response get_collections(const RoutedRequest& request);
 Response get_collection(const RoutedRequest& request);
 Response patch_collection(const RoutedRequest& request);

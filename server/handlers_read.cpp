@@ -8,6 +8,7 @@
 #include "server/features/links.h"
 #include "server/features/pages.h"
 #include "server/json_answers.h"
+#include "server/metrics/metrics.h"
 
 namespace watertight::server {
 namespace {
@@ -101,6 +102,16 @@ Response get_readiness(const RoutedRequest& request) {
   problem.status = 503;
   problem.headers = {{"Retry-After", "5"}};
   return to_response(problem);
+}
+
+Response get_metrics(const RoutedRequest& request) {
+  const Service& service = request.service;
+  if (service.metrics == nullptr) return refuse(404, "not-found", "this service counts nothing");
+  const Status status = service.readiness ? service.readiness() : service.store->ping();
+  return Response{200,
+                  "text/plain; version=0.0.4; charset=utf-8",
+                  service.metrics->text(status.has_value()),
+                  {}};
 }
 
 }  // namespace watertight::server

@@ -14,6 +14,7 @@
 #include "report/feature_report.h"
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
+#include "server/metrics/metrics.h"
 #include "server/submission.h"
 
 namespace watertight::server {
@@ -113,6 +114,21 @@ std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::Tex
   return report::json_report(std::move(sink), std::move(head));
 }
 
+/// Counts the judged solids of a feature and the findings between them.
+void count(Metrics* metrics, const pipeline::InspectedFeature& feature) {
+  if (metrics == nullptr) return;
+  for (std::size_t i = 0; i < feature.own; ++i) metrics->count(feature.solids[i].inspection.report);
+  for (const pipeline::InspectedGroup& group : feature.groups)
+    metrics->count(group.report.findings);
+}
+
+void count(Metrics* metrics, const pipeline::FeatureOutcome& feature) {
+  if (metrics == nullptr) return;
+  for (const pipeline::SolidOutcome& solid : feature.solids) metrics->count(solid.report);
+  for (const pipeline::InspectedGroup& group : feature.groups)
+    metrics->count(group.report.findings);
+}
+
 /// Validates a document and answers with its report; `kind` is 0 for JSON, 1 for GeoJSON, 2 for
 /// HTML; `surfaces` is the rule for surfaces, "" for the default. Equal documents get equal
 /// answers, so the report has no times.
@@ -150,7 +166,10 @@ Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
   Status status = report->begin_document({"request body", reader.document().format});
   const auto outcome = pipeline::validate_stream(
       reader, request.service.workers, stream,
-      [&](pipeline::ValidatedFeature&& feature) { return report->add(feature); },
+      [&](pipeline::ValidatedFeature&& feature) {
+        count(request.service.metrics, feature.inspected);
+        return report->add(feature);
+      },
       [](const Error& error) -> Status { return error; });
   if (!outcome) return to_response(problem_of_body(outcome.error()));
   if (status) status = report->end_document({reader.document().notes, 0});
@@ -223,6 +242,7 @@ Response post_items(const RoutedRequest& request) {
   pipeline::OutcomeKeeper keeper(kMostOutcomes, kMostOutcomeBytes);
   pipeline::Ingestion ingestion(*request.service.store, request.service.workers, options,
                                 [&](pipeline::FeatureOutcome&& feature) -> Status {
+                                  count(request.service.metrics, feature);
                                   keeper.add(std::move(feature));
                                   return Done{};
                                 });

@@ -7,6 +7,7 @@
 #include "server/access/gate.h"
 #include "server/features/cors.h"
 #include "server/handlers.h"
+#include "server/metrics/metrics.h"
 
 namespace watertight::server {
 namespace {
@@ -35,6 +36,16 @@ bool matches(const Route& route, const Target& target) {
 /// HEAD is GET without the body, which the session leaves out.
 std::string_view effective_method(const Request& request) {
   return request.method == "HEAD" ? std::string_view("GET") : std::string_view(request.method);
+}
+
+/// The route of a request; null if there is none.
+const Route* route_of(const Request& request) {
+  const auto target = parse_target(request.target);
+  if (!target) return nullptr;
+  for (const Route& route : routes()) {
+    if (route.method == effective_method(request) && matches(route, *target)) return &route;
+  }
+  return nullptr;
 }
 
 std::string allowed_methods(const Target& target) {
@@ -97,6 +108,7 @@ const std::vector<Route>& routes() {
       {"GET", "/conformance", quick, read, get_conformance, {"f"}},
       {"GET", "/healthz", quick, none, get_health, {}},
       {"GET", "/readyz", quick, none, get_readiness, {}},
+      {"GET", "/metrics", quick, read, get_metrics, {}},
       {"GET", "/collections", reading, read, get_collections, {"f", "limit", "after"}},
       {"GET", "/collections/{collectionId}", reading, read, get_collection, {"f"}},
       {"PATCH", "/collections/{collectionId}", small, admin, patch_collection, {}},
@@ -155,16 +167,12 @@ Response refuse(unsigned status, std::string kind, std::string detail) {
 }
 
 Lane lane_of(const Request& request, std::uint64_t body_bytes) {
-  const auto target = parse_target(request.target);
-  if (!target) return Lane::quick;
-  for (const Route& route : routes()) {
-    if (route.method != effective_method(request) || !matches(route, *target)) continue;
-    // A Watertight file is compressed: its size says little about the work in it.
-    const bool is_small = request.method == "POST" && body_bytes <= kSmallBody &&
-                          !pipeline::is_container(as_bytes(request.body));
-    return route.lane == Lane::computing && is_small ? Lane::small : route.lane;
-  }
-  return Lane::quick;
+  const Route* route = route_of(request);
+  if (route == nullptr) return Lane::quick;
+  // A Watertight file is compressed: its size says little about the work in it.
+  const bool is_small = request.method == "POST" && body_bytes <= kSmallBody &&
+                        !pipeline::is_container(as_bytes(request.body));
+  return route->lane == Lane::computing && is_small ? Lane::small : route->lane;
 }
 
 namespace {
@@ -174,12 +182,8 @@ namespace {
 /// ask (OPTIONS) never has a key.
 Scope scope_of(const Request& request) {
   if (request.method == "OPTIONS") return Scope::none;
-  const auto target = parse_target(request.target);
-  if (!target) return Scope::read;
-  for (const Route& route : routes()) {
-    if (route.method == effective_method(request) && matches(route, *target)) return route.scope;
-  }
-  return Scope::read;
+  const Route* route = route_of(request);
+  return route == nullptr ? Scope::read : route->scope;
 }
 
 Response routed(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
@@ -205,6 +209,18 @@ Response respond(const Service& service, const Request& request, const CancelPol
                             routed(service, request, is_cancelled));
 }
 
+namespace {
+
+/// Counts an answered request under its route.
+void count(const Service& service, const AnsweredRequest& answered) {
+  if (service.metrics == nullptr) return;
+  const Route* route =
+      route_of({std::string(answered.method), std::string(answered.target), {}, ""});
+  service.metrics->count(answered, route == nullptr ? std::string_view() : route->path);
+}
+
+}  // namespace
+
 Admission admit(const Service& service, const Request& request) {
   if (service.gate == nullptr) return {};
   Admission admission = service.gate->admit(request, scope_of(request));
@@ -220,17 +236,19 @@ Application make_application(const Service& service) {
                      [service](const Request& request, const CancelPoll& is_cancelled) {
                        return respond(service, request, is_cancelled);
                      },
-                     [service](const Request& request) { return admit(service, request); }};
+                     [service](const Request& request) { return admit(service, request); },
+                     [service](const AnsweredRequest& request) { count(service, request); }};
 }
 
 Application probe_application(const Service& service) {
   return Application{[](const Request&, std::uint64_t) { return Lane::quick; },
                      [service](const Request& request, const CancelPoll& is_cancelled) {
-                       if (request.target == "/healthz" || request.target == "/readyz") {
+                       if (request.target == "/healthz" || request.target == "/readyz" ||
+                           request.target == "/metrics") {
                          return respond(service, request, is_cancelled);
                        }
                        return refuse(404, "not-found",
-                                     "this address answers /healthz and /readyz only");
+                                     "this address answers /healthz, /readyz and /metrics only");
                      }};
 }
 

@@ -19,6 +19,7 @@ namespace watertight::server {
 class Budget;
 class ExportFiles;
 class Gate;
+class Metrics;
 class RepresentationCache;
 
 struct RouteOptions {
@@ -48,6 +49,8 @@ struct Service {
   Budget* document_memory = nullptr;
   /// The keys of clients. Null: everybody may do everything. Outlives the service.
   const Gate* gate = nullptr;
+  /// Counts for Prometheus. Null: nothing is counted. Outlives the service.
+  Metrics* metrics = nullptr;
 };
 
 /// Whether a request may be answered, by its key.
@@ -62,7 +65,7 @@ Lane lane_of(const Request& request, std::uint64_t body_bytes);
 /// lane_of() and respond() in the form in which the server calls them.
 Application make_application(const Service& service);
 
-/// The application that answers /healthz and /readyz only.
+/// The application that answers /healthz, /readyz and /metrics only, without keys.
 Application probe_application(const Service& service);
 
 }  // namespace watertight::server

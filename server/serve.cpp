@@ -22,6 +22,7 @@
 #include "server/budget.h"
 #include "server/export_files.h"
 #include "server/items/representation_cache.h"
+#include "server/metrics/metrics.h"
 
 namespace watertight::server {
 namespace {
@@ -216,6 +217,8 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   service.options.base_url = options.base_url;
   service.options.cors_origin = options.cors_origin;
   service.gate = gate;
+  Metrics metrics;
+  service.metrics = &metrics;
   const LogLine log = [logger](const std::string& line) { logger->info(line); };
   std::unique_ptr<HttpServer> probes;
   if (options.probes) {

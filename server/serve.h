@@ -21,8 +21,8 @@ namespace watertight::server {
 
 struct ServeOptions {
   ServerOptions server;
-  /// A second address that answers /healthz and /readyz only, with a thread and connections of its
-  /// own.
+  /// A second address that answers /healthz, /readyz and /metrics only, with a thread and
+  /// connections of its own.
   std::optional<ServerOptions> probes = {};
   std::string base_url;                        // RouteOptions::base_url
   std::string cors_origin;                     // RouteOptions::cors_origin

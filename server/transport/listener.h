@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/cancel.h"
 #include "base/result.h"
@@ -23,6 +24,15 @@ struct Admission {
   std::optional<Response> refusal = std::nullopt;
 };
 
+/// An answered request, as it is logged. The texts live as long as the call.
+struct AnsweredRequest {
+  std::string_view method;  // as the client wrote it
+  std::string_view target;
+  unsigned status = 0;      // 0: the client left before its request was whole
+  std::uint64_t bytes = 0;  // of the body of the answer
+  double seconds = 0;       // from the first byte of the request to the last one of the answer
+};
+
 /// The functions that answer requests. Several threads call both at once.
 struct Application {
   /// Chooses the threads for a request whose body has so many bytes. A body above 64 KiB is not yet
@@ -31,6 +41,8 @@ struct Application {
   std::function<Response(const Request&, const CancelPoll&)> respond;
   /// Asked at once when a header has come, before the body is read. Null: all requests go on.
   std::function<Admission(const Request&)> admit = nullptr;
+  /// Called after each answer, from the I/O thread. Null: nobody counts.
+  std::function<void(const AnsweredRequest&)> answered = nullptr;
   /// Called when a stop has waited long enough: what respond() is doing should fail soon.
   std::function<void()> interrupt = nullptr;
 };

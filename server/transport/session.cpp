@@ -544,7 +544,11 @@ awaitable<void> Session::linger() {
 
 void Session::log_answer(unsigned status, std::uint64_t bytes, Clock::time_point start,
                          const Status& sent) {
-  const auto milliseconds = static_cast<std::int64_t>(std::llround(seconds_since(start) * 1e3));
+  const double elapsed = seconds_since(start);
+  if (environment_.application.answered) {
+    environment_.application.answered({method_, target_, status, bytes, elapsed});
+  }
+  const auto milliseconds = static_cast<std::int64_t>(std::llround(elapsed * 1e3));
   environment_.log("event=request peer=" + connection_->peer + " method=" + quoted(method_) +
                    " target=" + quoted(target_) + " status=" + std::to_string(status) +
                    " bytes=" + std::to_string(bytes) + " ms=" + std::to_string(milliseconds) +

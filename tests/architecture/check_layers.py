@@ -45,6 +45,7 @@ MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/
 HOMES = [
     (r"boost/(?!multiprecision)", "Boost", [r"server/", r"tests/builds/"]),
     (r"spdlog/", "spdlog", [r"server/"]),
+    (r"prometheus/", "prometheus-cpp", [r"server/metrics/"]),
     (r"openssl/", "OpenSSL", [r"server/access/"]),
     (r"(postgresql/)?(libpq-fe|libpq-events)\.h", "libpq",
      [r"store/", r"tests/unit/store/", r"tests/integration/", r"bench/"]),

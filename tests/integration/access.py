@@ -3,12 +3,16 @@
 """Uses the access keys of a running service as clients and administrators do: access.py WATERTIGHT
 
 Without keys it does not start on an address that other machines reach. With them curl and GDAL read and write
-as their keys allow, and a key that is taken back counts no more. Exit code 1 after a difference.
+as their keys allow, and a key that is taken back counts no more. Prometheus' own parser reads the metrics.
+Exit code 1 after a difference.
 """
 import os
 import subprocess
 import sys
 import time
+import urllib.request
+
+from prometheus_client.parser import text_string_to_metric_families
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../siege"))
 from checks import check, failures, run  # noqa: E402
@@ -49,13 +53,27 @@ def check_start(folder):
     check(not (folder / "none").exists(), "a service that does not start makes no database")
 
 
+def check_metrics(log):
+    """Reads the metrics on the address of the probes, which the log names."""
+    probes = next(line.split("url=")[1] for line in log.splitlines() if "event=probes" in line)
+    with urllib.request.urlopen(f"{probes}/metrics", timeout=10) as answer:
+        families = text_string_to_metric_families(answer.read().decode())
+    found = {(sample.name, *sorted(sample.labels.values())): sample.value
+             for family in families for sample in family.samples}
+    items = "/collections/{collectionId}/items"
+    check(found[("watertight_requests_total", items, "201", "POST")] == 1
+          and found[("watertight_requests_total", items, "403", "POST")] == 1
+          and found[("watertight_solids_total", "valid")] == 3 and found[("watertight_database_ready",)] == 1,
+          "Prometheus reads metrics without key on the address of the probes")
+
+
 def check_keys(folder):
     file = folder / "keys"
     reader, writer, admin = (new_key(scope, scope, file) for scope in ("read", "write", "admin"))
     again = watertight("key", "read", "--scope", "read", "--keys", str(file))
     check(again.returncode == 2 and "read" in again.stderr, "a name has one key")
     check(not any(key in file.read_text() for key in (reader, writer, admin)), "the file holds no key")
-    with Service(PROGRAM, folder, ["--keys", str(file)]) as service:
+    with Service(PROGRAM, folder, ["--keys", str(file), "--probes", "127.0.0.1:0"]) as service:
         url = f"http://127.0.0.1:{service.port}"
         check(status(service, "GET", "/readyz") == 200, "probes need no key")
         check(status(service, "GET", "/collections") == 401, "reading needs a key")
@@ -67,6 +85,8 @@ def check_keys(folder):
         check("Feature Count: 3" in counted, "GDAL reads with a key as password")
         page = run("curl", "-s", "-i", "-u", f"anyone:{reader}", f"{url}/collections/town?f=html")
         check(page.startswith("HTTP/1.1 200 "), "so do curl and browsers")
+        check_metrics((folder / "log").read_text())
+        check(status(service, "GET", "/metrics") == 401, "and with one on the other")
         check(status(service, "DELETE", "/collections/town", writer) == 403, "a key to write deletes no collection")
         check("key=\"write\"" in (folder / "log").read_text() and writer not in (folder / "log").read_text(),
               "the log names the key and does not have it")

@@ -37,6 +37,7 @@ Json collection_json(const store::StoredCollection& collection, const std::strin
        link(self + "/items", "items", kGeoJson, "its features"),
        link(self + "/queryables", "http://www.opengis.net/def/rel/ogc/1.0/queryables",
             "application/schema+json", "attributes that can be queried"),
+       link(self + "/3dtiles", "alternate", "application/json+3dtiles", "all of it as 3D Tiles"),
        link(self + "/export?f=wt", "enclosure", kContainer, "all of it as a Watertight file"),
        link(self + "/export?f=cityjsonseq", "enclosure", kCityJsonSeq,
             "all of it as a CityJSONSeq, if its features share a header")});

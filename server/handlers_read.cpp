@@ -61,7 +61,8 @@ Response get_landing(const RoutedRequest& request) {
        link(base + "/collections", "data", kJson, "collections of solids"),
        link(base + "/validate", "validate", kJson, "POST a document to validate it"),
        link(base + "/healthz", "status", kJson, "state of the process"),
-       link(base + "/readyz", "status", kJson, "state of the database")});
+       link(base + "/readyz", "status", kJson, "state of the database"),
+       link(base + "/metrics", "monitor", "text/plain", "counters for Prometheus")});
   const Json json{{"title", kTitle}, {"description", kDescription}, {"links", links}};
   return *form == AnswerForm::html ? html_response(landing_page(json)) : json_response(json);
 }

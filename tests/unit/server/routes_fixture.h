@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/handlers.h"
+#include "server/metrics/metrics.h"
 #include "tests/unit/pipeline/samples.h"
 #include "tests/unit/server/answers.h"
 
@@ -21,8 +22,9 @@ class RoutesFixture {
  public:
   server::Response send(server::Request request) const {
     const CancelPoll never = [] { return false; };
-    server::Response response =
-        server::respond(server::Service{&store, nullptr, {}}, request, never);
+    server::Service service{&store, nullptr, {}};
+    service.metrics = &metrics;
+    server::Response response = server::respond(service, request, never);
     while (response.further) response = std::shared_ptr(response.further)->make(never);
     return response;
   }
@@ -35,6 +37,7 @@ class RoutesFixture {
     return send({"POST", target, {{"content-type", type}}, std::move(body)});
   }
   mutable MemoryStore store;
+  mutable server::Metrics metrics;
 };
 
 inline Json problem_of(const server::Response& response) {

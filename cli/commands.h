@@ -147,6 +147,7 @@ struct ServeCommand {
   std::string keys_file;           // "" for none
   bool is_open = false;            // nobody needs a key, though other machines reach the address
   bool reading_is_public = false;  // with keys_file
+  bool prints_options = false;     // and does nothing else
 };
 Exit run(const ServeCommand& command);
 

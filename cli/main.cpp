@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <sstream>
 #include <thread>
 
 #include "cli/commands.h"
@@ -298,6 +299,19 @@ void add_info(CLI::App& app, InfoCommand& command, Chosen& chosen) {
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
+/// The options of a command as text for --config. Those that are not given are comments, since an
+/// empty one would count as given.
+std::string options_file(const CLI::App& command) {
+  std::istringstream lines(command.config_to_str(true, true));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_given = !line.ends_with("=\"\"") && !line.ends_with("=false");
+    if (!is_given) text += "# ";
+    text.append(line) += '\n';
+  }
+  return text;
+}
+
 void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand("serve", "Run the HTTP service until SIGTERM or SIGINT");
   add_store(*sub, command.store);
@@ -327,7 +341,18 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
                   "of each request");
   sub->add_flag("--require-preconditions", command.requires_preconditions,
                 "refuse writes of features without If-Match or If-None-Match");
-  sub->callback([&] {
+  sub->add_flag("--print-config", command.prints_options,
+                "print all options as a file for --config, and end")
+      ->configurable(false);
+  sub->fallthrough();  // --config may stand behind the command
+  sub->callback([&, sub] {
+    if (command.prints_options) {
+      chosen = [sub] {
+        std::printf("[serve]\n%s", options_file(*sub).c_str());
+        return Exit::valid;
+      };
+      return;
+    }
     require_store(command.store);
     chosen = [&] { return run(command); };
   });
@@ -484,6 +509,9 @@ int run_command_line(int argc, char** argv) {
   CLI::App app("Validates, stores and compresses 3D solids", "watertight");
   app.set_version_flag("--version", WATERTIGHT_VERSION);
   app.require_subcommand(1);
+  app.set_config("--config", "", "file of options (TOML), in a section for each command")
+      ->configurable(false);
+  app.allow_config_extras(CLI::config_extras_mode::error);
   app.footer(
       "Exit status: 0 all valid (warnings allowed), 1 something invalid, 2 error, 3 undecided");
   ValidateCommand validate_command;

@@ -56,6 +56,28 @@ TEST_CASE_METHOD(Fixture, "the exit status separates valid, invalid and broken i
   CHECK(run("validate good.city.jsonl bad.city.jsonl missing.obj").status == 2);
 }
 
+TEST_CASE_METHOD(Fixture, "options come from a file, which the program can print") {
+  const std::string options =
+      "serve --data-dir d --listen 10.0.0.5:80 --keys k --public-read --cors https://a.example ";
+  const Ran printed = run(options + "--print-config");
+  CHECK(printed.status == 0);
+  CHECK(printed.output.starts_with("[serve]\n"));
+  CHECK(printed.output.find("\nlisten=\"10.0.0.5:80\"\n") != std::string::npos);
+  CHECK(printed.output.find("\n# open=false\n") != std::string::npos);
+  write("serve.toml", printed.output);
+  CHECK(run("serve --config serve.toml --print-config").output == printed.output);
+  // The command line counts before the file.
+  const std::string other = run("serve --config serve.toml --listen :81 --print-config").output;
+  CHECK(other.find("\nlisten=\":81\"\n") != std::string::npos);
+  write("open.toml", "[serve]\nlisten=\"0.0.0.0:80\"\ndata-dir=\"d\"\n");
+  CHECK(run("serve --config open.toml").output.find("--open") != std::string::npos);
+  write("wrong.toml", "[serve]\nlitsen=\"0.0.0.0:80\"\n");
+  const Ran wrong = run("serve --data-dir d --config wrong.toml");
+  CHECK(wrong.status == 2);
+  CHECK(wrong.output.find("litsen") != std::string::npos);
+  CHECK(run("serve --data-dir d --config missing.toml").status == 2);
+}
+
 TEST_CASE_METHOD(Fixture, "wrong usage is status 2 with a message") {
   CHECK(run("").status == 2);
   CHECK(run("fly").status == 2);

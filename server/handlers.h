@@ -56,6 +56,14 @@ struct Route {
 inline constexpr std::string_view kItemParameters[] = {
     "f", "limit", "after", "bbox", "bbox-crs", "datetime", "proven", "crs", "lod"};
 
+/// The parameters of a document that is judged, without and with storing it.
+inline constexpr std::string_view kValidateParameters[] = {
+    "f",       "surfaces",       "planarity", "planarity-angle",
+    "overlap", "exact-overlaps", "proof",     "strict"};
+inline constexpr std::string_view kSubmitParameters[] = {
+    "f",       "invalid",        "surfaces", "planarity", "planarity-angle",
+    "overlap", "exact-overlaps", "proof",    "strict"};
+
 /// All routes; the OpenAPI document describes exactly these (a test compares them).
 const std::vector<Route>& routes();
 

@@ -129,8 +129,7 @@ const std::vector<Route>& routes() {
        computing,
        write,
        post_items,
-       {"f", "invalid", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps",
-        "proof", "strict"}},
+       {std::begin(kSubmitParameters), std::end(kSubmitParameters)}},
       {"GET",
        "/collections/{collectionId}/items/{itemId}",
        reading,
@@ -156,8 +155,7 @@ const std::vector<Route>& routes() {
        computing,
        read,
        post_validate,
-       {"f", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps", "proof",
-        "strict"}},
+       {std::begin(kValidateParameters), std::end(kValidateParameters)}},
   };
   return table;
 }

@@ -61,7 +61,8 @@ Exit run(const ServeCommand& command) {
              {ErrorCode::invalid_argument,
               "at " + options.server.address +
                   " other machines could change everything: name a file of keys (--keys FILE, "
-                  "which 'watertight key' makes), or give --open if nobody else reaches it"});
+                  "which 'watertight key' makes), or give --open (in a container "
+                  "WATERTIGHT_OPEN=1) if nobody else reaches it"});
     return Exit::error;
   }
   options.keys_file = command.keys_file;

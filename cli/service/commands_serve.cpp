@@ -3,11 +3,12 @@
 // The commands serve, which runs the service, and key, which makes keys for its clients.
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/files.h"
 #include "cli/inputs.h"
 #include "cli/opened_store.h"
 #include "cli/terminal/printable.h"
@@ -117,8 +118,10 @@ Exit run(const KeyCommand& command) {
   };
   // The file is read first, so that no key is added to a file that is none of keys.
   std::string text;
-  if (std::ifstream file(command.file, std::ios::binary); file) {
-    text.assign(std::istreambuf_iterator<char>(file), {});
+  if (std::filesystem::exists(command.file)) {
+    const auto bytes = read_file(command.file, Limits{});
+    if (!bytes) return fail(bytes.error());
+    text = as_text(*bytes);
   }
   const auto keys = server::read_keys(text);
   if (!keys) return fail(keys.error());

@@ -116,11 +116,10 @@ function requestsOf(path, method, operation) {
 }
 
 function targetOf(path, {values, query}) {
-  const filled =
-      path.replaceAll(/\{(\w+)\}/g, (_, name) => encodeURIComponent(values[name].toWellFormed()));
+  const filled = path.replaceAll(/\{(\w+)\}/g, (_, name) => encodeURIComponent(values[name]));
   const pairs = Object.entries(query)
                     .filter(([, value]) => value !== undefined)
-                    .map(([name, value]) => `${name}=${encodeURIComponent(value.toWellFormed())}`);
+                    .map(([name, value]) => `${name}=${encodeURIComponent(value)}`);
   return filled + (pairs.length > 0 ? `?${pairs.join('&')}` : '');
 }
 

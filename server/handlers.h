@@ -73,6 +73,8 @@ Response get_api(const RoutedRequest& request);
 Response get_health(const RoutedRequest& request);
 Response get_readiness(const RoutedRequest& request);
 Response get_metrics(const RoutedRequest& request);
+Response get_web_file(const RoutedRequest& request);
+Response get_validate(const RoutedRequest& request);
 Response get_collections(const RoutedRequest& request);
 Response get_collection(const RoutedRequest& request);
 Response patch_collection(const RoutedRequest& request);

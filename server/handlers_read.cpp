@@ -5,10 +5,13 @@
 #include <array>
 #include <optional>
 
+#include "base/checksum.h"
 #include "server/features/links.h"
 #include "server/features/pages.h"
+#include "server/items/preconditions.h"
 #include "server/json_answers.h"
 #include "server/metrics/metrics.h"
+#include "web/files.h"
 
 namespace watertight::server {
 namespace {
@@ -59,12 +62,37 @@ Response get_landing(const RoutedRequest& request) {
        link(base + "/api", "service-desc", kOpenApiType, "the API"),
        link(base + "/conformance", "conformance", kJson, "the standards that the service follows"),
        link(base + "/collections", "data", kJson, "collections of solids"),
-       link(base + "/validate", "validate", kJson, "POST a document to validate it"),
+       link(base + "/validate", "validate", kHtml, "validate a file, or POST one"),
        link(base + "/healthz", "status", kJson, "state of the process"),
        link(base + "/readyz", "status", kJson, "state of the database"),
        link(base + "/metrics", "monitor", "text/plain", "counters for Prometheus")});
   const Json json{{"title", kTitle}, {"description", kDescription}, {"links", links}};
   return *form == AnswerForm::html ? html_response(landing_page(json)) : json_response(json);
+}
+
+Response get_validate(const RoutedRequest& request) {
+  const auto form = answer_form(request);
+  if (!form) return refuse_forms();
+  const std::string base = base_url(request);
+  if (*form == AnswerForm::html) return html_response(validate_page(base));
+  return json_response(
+      Json{{"title", "Validate a document"},
+           {"description", "POST a document to this address; the answer is the report"},
+           {"links", Json::array({link(base + "/validate", "self", kJson, "this page"),
+                                  link(base + "/api", "service-desc", kOpenApiType, "the API")})}});
+}
+
+Response get_web_file(const RoutedRequest& request) {
+  for (const web::WebFile& file : web::files()) {
+    if (file.name != request.target.segments[1]) continue;
+    const std::string etag = etag_of(content_hash(as_bytes(file.text)), "web");
+    if (auto unneeded = unless_needed(request.request, etag)) return *std::move(unneeded);
+    return Response{200,
+                    std::string(file.type),
+                    std::string(file.text),
+                    {{"ETag", etag}, {"Cache-Control", "no-cache"}}};
+  }
+  return refuse(404, "not-found", "there is no such file of the pages");
 }
 
 Response get_conformance(const RoutedRequest& request) {

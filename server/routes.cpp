@@ -60,7 +60,7 @@ std::string allowed_methods(const Target& target) {
 
 /// The refusal of a target that matches a route; nothing when the target is fine.
 std::optional<Response> refusal_of(const Target& target, const Route& route) {
-  if (target.segments.size() > 1) {
+  if (target.segments.size() > 1 && target.segments[0] == "collections") {
     const Status checked = store::check_collection_id(target.segments[1]);
     if (!checked) {
       return refuse(route.method == "GET" ? 404 : 400, "collection-id", checked.error().message);
@@ -99,9 +99,13 @@ Response unrouted(const Request& request, const Target& target) {
 
 }  // namespace
 
-const std::vector<Route>& routes() {
-  using enum Lane;
-  using enum Scope;
+namespace {
+
+using enum Lane;
+using enum Scope;
+
+/// The service as a whole.
+const std::vector<Route>& general_routes() {
   static const std::vector<Route> table{
       {"GET", "/", quick, read, get_landing, {"f"}},
       {"GET", "/api", quick, read, get_api, {"f"}},
@@ -109,6 +113,20 @@ const std::vector<Route>& routes() {
       {"GET", "/healthz", quick, none, get_health, {}},
       {"GET", "/readyz", quick, none, get_readiness, {}},
       {"GET", "/metrics", quick, read, get_metrics, {}},
+      {"GET", "/web/{file}", quick, none, get_web_file, {}},
+      {"GET", "/validate", quick, read, get_validate, {"f"}},
+      {"POST",
+       "/validate",
+       computing,
+       read,
+       post_validate,
+       {std::begin(kValidateParameters), std::end(kValidateParameters)}},
+  };
+  return table;
+}
+
+const std::vector<Route>& collection_routes() {
+  static const std::vector<Route> table{
       {"GET", "/collections", reading, read, get_collections, {"f", "limit", "after"}},
       {"GET", "/collections/{collectionId}", reading, read, get_collection, {"f"}},
       {"PATCH", "/collections/{collectionId}", small, admin, patch_collection, {}},
@@ -117,6 +135,25 @@ const std::vector<Route>& routes() {
       {"GET", "/collections/{collectionId}/queryables", reading, read, get_queryables, {"f"}},
       {"GET", "/collections/{collectionId}/attributes", reading, read, get_attributes, {"f"}},
       {"PUT", "/collections/{collectionId}/attributes", small, write, put_attributes, {}},
+      {"GET",
+       "/collections/{collectionId}/export",
+       computing,
+       read,
+       get_export,
+       {"f", "proven", "part"}},
+      {"GET", "/collections/{collectionId}/3dtiles", computing, read, get_tileset, {"compression"}},
+      {"GET",
+       "/collections/{collectionId}/3dtiles/content",
+       computing,
+       read,
+       get_tile,
+       {"frame", "origin", "bounds", "from", "below", "compression"}},
+  };
+  return table;
+}
+
+const std::vector<Route>& item_routes() {
+  static const std::vector<Route> table{
       {"GET",
        "/collections/{collectionId}/items",
        reading,
@@ -137,27 +174,21 @@ const std::vector<Route>& routes() {
        get_item,
        {"f", "solid", "crs", "lod"}},
       {"DELETE", "/collections/{collectionId}/items/{itemId}", small, write, delete_item, {}},
-      {"GET",
-       "/collections/{collectionId}/export",
-       computing,
-       read,
-       get_export,
-       {"f", "proven", "part"}},
-      {"GET", "/collections/{collectionId}/3dtiles", computing, read, get_tileset, {"compression"}},
-      {"GET",
-       "/collections/{collectionId}/3dtiles/content",
-       computing,
-       read,
-       get_tile,
-       {"frame", "origin", "bounds", "from", "below", "compression"}},
-      {"POST",
-       "/validate",
-       computing,
-       read,
-       post_validate,
-       {std::begin(kValidateParameters), std::end(kValidateParameters)}},
   };
   return table;
+}
+
+}  // namespace
+
+const std::vector<Route>& routes() {
+  static const std::vector<Route> all = [] {
+    std::vector<Route> joined;
+    for (const auto* part : {&general_routes(), &collection_routes(), &item_routes()}) {
+      joined.insert(joined.end(), part->begin(), part->end());
+    }
+    return joined;
+  }();
+  return all;
 }
 
 Response refuse(unsigned status, std::string kind, std::string detail) {

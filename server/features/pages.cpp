@@ -17,22 +17,34 @@ using report::html_text;
 
 constexpr std::size_t kMostColumns = 6;  // of attributes in a list of items
 
-constexpr std::string_view kHead =
-    R"(<!doctype html>
+/// Ways from a page to the address of the service, by the length of the page's own path.
+constexpr std::string_view kFromTop = "";
+constexpr std::string_view kFromCollection = "../";
+constexpr std::string_view kFromItems = "../../";
+constexpr std::string_view kFromItem = "../../../";
+
+/// The head of a page. The script and the style are files of the service itself (web/), and the
+/// page may load nothing from elsewhere; compressed tiles are unpacked by WebAssembly.
+std::string head(std::string_view title, std::string_view root) {
+  std::string out =
+      R"(<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
-<style>
-:root{color-scheme:light dark}
-body{font:16px/1.5 system-ui,sans-serif;margin:2em auto;max-width:64em;padding:0 1em}
-table{border-collapse:collapse;display:block;overflow-x:auto;margin:1em 0}
-th[scope=row]{white-space:nowrap}th,td{border-bottom:1px solid #8886;padding:.3em .8em;text-align:left;vertical-align:top}
-td.number,th.number{text-align:right;font-variant-numeric:tabular-nums}
-a{color:#0b62c4}@media(prefers-color-scheme:dark){a{color:#7db7ff}}
-nav{margin-bottom:1em}.bad{font-weight:bold}
-</style>
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; connect-src 'self'; img-src 'self' data:; form-action 'self'; base-uri 'none'">
+<link rel="icon" href="data:,">
 )";
+  out.append("<link rel=\"stylesheet\" href=\"").append(root).append("web/main.css\">\n");
+  out.append("<script type=\"module\" src=\"").append(root).append("web/main.js\"></script>\n");
+  out.append("<title>").append(html_text(title)).append(" - Watertight</title>\n");
+  return out;
+}
+
+/// The place of a view of web/src/main.js, which is not seen where there are no scripts.
+std::string view(std::string_view name) {
+  std::string out = "<section data-view=\"";
+  return out.append(name).append("\" hidden></section>\n");
+}
 
 std::string anchor(std::string_view href, std::string_view text) {
   std::string out = "<a href=\"";
@@ -95,16 +107,15 @@ std::string link_named(const Json& document, std::string_view relation) {
 }
 
 /// A page with its title and a way back along `path`: pairs of address and name.
-std::string page(std::string_view title,
+std::string page(std::string_view title, std::string_view root,
                  const std::vector<std::pair<std::string, std::string>>& path,
                  std::string_view body) {
-  std::string out(kHead);
-  out.append("<title>").append(html_text(title)).append(" - Watertight</title>\n");
+  std::string out = head(title, root);
   if (!path.empty()) out += "<nav aria-label=\"Path\">";
   for (const auto& [href, name] : path) out.append(anchor(href, name)).append(" / ");
   if (!path.empty()) out += "</nav>\n";
-  out.append("<h1>").append(html_text(title)).append("</h1>\n").append(body);
-  return out.append("</html>\n");
+  out.append("<main>\n<h1>").append(html_text(title)).append("</h1>\n").append(body);
+  return out.append("</main>\n</html>\n");
 }
 
 std::string collection_row(const Json& collection) {
@@ -170,7 +181,9 @@ Response html_response(std::string page) {
 }
 
 std::string landing_page(const Json& landing) {
-  std::string body = "<p>" + html_text(landing["description"].get<std::string>()) + ".</p>\n<ul>\n";
+  std::string body = "<p>" + html_text(landing["description"].get<std::string>()) + ".</p>\n";
+  body += view("upload");
+  body += "<h2>Links</h2>\n<ul>\n";
   for (const Json& item : landing["links"]) {
     const std::string href = item["href"];
     body.append("<li>").append(anchor(href, href)).append(" ");
@@ -179,7 +192,16 @@ std::string landing_page(const Json& landing) {
   body +=
       "</ul>\n<p>QGIS and GDAL read the collections by the address of this page (OGC API "
       "Features).</p>\n";
-  return page(landing["title"].get<std::string>(), {}, body);
+  return page(landing["title"].get<std::string>(), kFromTop, {}, body);
+}
+
+std::string validate_page(const std::string& start) {
+  return page(
+      "Validate a file", kFromTop, {{start + "/", "Watertight"}},
+      view("upload") +
+          "<noscript><p>This page needs scripts. Without them send the file to this address "
+          "by another program: <code>curl --data-binary @town.city.json -H 'Accept: "
+          "text/html' ADDRESS</code></p></noscript>\n");
 }
 
 std::string conformance_page(const Json& conformance) {
@@ -187,29 +209,29 @@ std::string conformance_page(const Json& conformance) {
   for (const Json& name : conformance["conformsTo"]) {
     body.append("<li>").append(html_text(name.get<std::string>())).append("</li>\n");
   }
-  return page("Conformance", {}, body + "</ul>\n");
+  return page("Conformance", kFromTop, {}, body + "</ul>\n");
 }
 
 std::string collections_page(const Json& collections) {
   const std::string start = start_of(link_named(collections, "self"));
   if (collections["collections"].empty()) {
-    return page("Collections", {{start + "/", "Watertight"}},
+    return page("Collections", kFromTop, {{start + "/", "Watertight"}},
                 "<p>There is no collection yet.</p>\n");
   }
-  std::string body = "<table>\n<tr>" + heading("Collection") + heading("Features", true) +
-                     heading("Solids", true) + heading("Not proven", true) + heading("CRS") +
-                     "</tr>\n";
+  std::string body = view("filter") + "<table>\n<tr>" + heading("Collection") +
+                     heading("Features", true) + heading("Solids", true) +
+                     heading("Not proven", true) + heading("CRS") + "</tr>\n";
   for (const Json& collection : collections["collections"]) body += collection_row(collection);
   body += "</table>\n";
   const std::string next = link_named(collections, "next");
   if (!next.empty()) body.append("<p>").append(anchor(next, "Next page")).append("</p>\n");
-  return page("Collections", {{start + "/", "Watertight"}}, body);
+  return page("Collections", kFromTop, {{start + "/", "Watertight"}}, body);
 }
 
 std::string collection_page(const Json& collection) {
   const std::string self = link_named(collection, "self");
   const std::string start = start_of(self);
-  std::string body = "<table>\n";
+  std::string body = view("city") + "<table>\n";
   body += fact("Features", collection["features"]);
   body += fact("Solids", collection["solids"]);
   body += fact("Solids that are not proven", collection["unproven"]["solids"]);
@@ -228,7 +250,7 @@ std::string collection_page(const Json& collection) {
         anchor(item["href"].get<std::string>(), item["title"].get<std::string>()));
     body += "</li>\n";
   }
-  return page(collection["id"].get<std::string>(),
+  return page(collection["id"].get<std::string>(), kFromCollection,
               {{start + "/", "Watertight"}, {start + "/collections", "Collections"}},
               body + "</ul>\n");
 }
@@ -237,7 +259,8 @@ std::string items_page(const std::string& collection, const Json& items) {
   const std::string up = link_named(items, "collection");
   const std::string start = start_of(up);
   const std::vector<std::string> columns = columns_of(items["features"]);
-  std::string body = "<p>Features on this page: " + text_of(items["numberReturned"]);
+  std::string body =
+      view("filter") + "<p>Features on this page: " + text_of(items["numberReturned"]);
   if (items.contains("numberMatched")) body += " of " + text_of(items["numberMatched"]);
   body += ".</p>\n<table>\n<tr>" + heading("Feature") + heading("Type") + heading("Proof") +
           heading("Solids", true);
@@ -248,13 +271,13 @@ std::string items_page(const std::string& collection, const Json& items) {
   const std::string next = link_named(items, "next");
   if (!next.empty()) body.append("<p>").append(anchor(next, "Next page")).append("</p>\n");
   return page(
-      "Features of " + collection,
+      "Features of " + collection, kFromItems,
       {{start + "/", "Watertight"}, {start + "/collections", "Collections"}, {up, collection}},
       body);
 }
 
 std::string item_page(const std::string& collection, const Json& feature) {
-  std::string body = "<table>\n";
+  std::string body = view("item") + "<table>\n";
   for (const auto& [name, value] : feature["properties"].items()) body += fact(name, value);
   if (feature.contains("bbox")) body += extent_facts(feature["bbox"]);
   body += "</table>\n<h2>As a file</h2>\n<ul>\n";
@@ -264,12 +287,13 @@ std::string item_page(const std::string& collection, const Json& feature) {
       {"?f=geojson", "GeoJSON"},
       {"?f=jsonfg", "JSON-FG"},
       {"?f=obj", "OBJ"},
+      {"?f=glb", "binary glTF"},
       {"?f=wt", "Watertight file"},
       {"?f=proof", "Proof, measures and findings (JSON)"}};
   for (const auto& [href, name] : kForms) {
     body.append("<li>").append(anchor(href, name)).append("</li>\n");
   }
-  return page(feature["id"].get<std::string>(),
+  return page(feature["id"].get<std::string>(), kFromItem,
               {{"../..", "Collections"}, {"..", collection}, {"../items", "Features"}},
               body + "</ul>\n");
 }

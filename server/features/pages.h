@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Answers as HTML pages for people. They load nothing from elsewhere and need no script. Internal
-// to server/.
+// Answers as HTML pages for people. They load nothing from elsewhere. All facts are in them without
+// scripts; with scripts (web/) they have pictures, and take files. Internal to server/.
 #pragma once
 
 #include <optional>
@@ -22,6 +22,9 @@ std::optional<AnswerForm> answer_form(const RoutedRequest& request);
 Response refuse_forms();
 
 Response html_response(std::string page);
+
+/// The page that judges a file; `start` is the address of the service.
+std::string validate_page(const std::string& start);
 
 /// The pages of answers in JSON: of `/`, `/conformance`, `/collections`, one collection, a list of
 /// items and one item, which is a GeoJSON Feature.

@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 clang_format=$(command -v clang-format-14 || command -v clang-format)
-mapfile -d '' files < <(find . \( -name .git -o -name 'build*' -o -path ./data \) -prune -o \
+mapfile -d '' files < <(find . \( -name .git -o -name 'build*' -o -path ./data -o -name node_modules -o -path ./web/dist \) -prune -o \
   -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.js' \) -print0)
 # One process for all files: it starts slowly.
 if [ "${1:-}" = --fix ]; then exec "$clang_format" --style=file -i "${files[@]}"; fi

@@ -7,7 +7,7 @@ if ! command -v node >/dev/null; then
   echo "no node"
   exit 77
 fi
-mapfile -d '' files < <(find . \( -name .git -o -name 'build*' -o -path ./data \) -prune -o \
+mapfile -d '' files < <(find . \( -name .git -o -name 'build*' -o -path ./data -o -name node_modules \) -prune -o \
   -type f -name '*.js' -print0)
 for file in "${files[@]}"; do node --check "$file"; done
 echo "node --check: ${#files[@]} files"

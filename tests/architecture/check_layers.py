@@ -35,7 +35,7 @@ import sys
 import tempfile
 
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
-           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "pipeline", "report", "server", "cli", "sql"]
+           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "pipeline", "report", "web", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
 MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/
@@ -221,6 +221,8 @@ def check_cgal(tree):
 
 def check_licence(tree):
     for name in tree.files:
+        if name.startswith("web/dist/"):
+            continue  # made of web/src and of parts of others (web/THIRD-PARTY.md)
         if LICENSED.search(name) and name in tree.text and tree.text[name].strip():
             if not any("SPDX-License-Identifier:" in line
                        for line in tree.text[name].split("\n", 2)[:2]):

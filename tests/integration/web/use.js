@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Goes through the pages of a service in Chromium and prints what was checked, as JSON:
+//   node use.js SERVICE/ EXAMPLES PICTURES
+// The service has a collection "delft" with the features of EXAMPLES/delft.city.jsonl.
+import {existsSync, readFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+
+const require = createRequire(`${process.cwd()}/`);
+const {chromium} = require('playwright-core');
+const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+const [service, examples, pictures] = process.argv.slice(2);
+
+const kNearMiddle = 0.12;  // of the width or height of the picture
+const kPlace = [0x9b, 0x30, 0xff];
+const kFacet = [0xbb, 0x57, 0x63];  // red over a wall
+const kChosen = [0xff, 0xd2, 0x3f];
+
+const seen = [];
+const check = (isRight, name) => seen.push({isRight: Boolean(isRight), name});
+
+const executablePath = ['/usr/bin/chromium', '/usr/bin/google-chrome'].find(existsSync);
+const browser = await chromium.launch({
+  executablePath,
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader']
+});
+const context = await browser.newContext(
+    {viewport: {width: 1280, height: 860}, reducedMotion: 'reduce', acceptDownloads: true});
+const page = await context.newPage();
+page.setDefaultTimeout(60_000);
+const troubles = [];
+page.on('console', (message) => {
+  if (message.type() === 'error') troubles.push(message.text());
+});
+page.on('pageerror', (error) => troubles.push(String(error)));
+page.on('request', (request) => {
+  const url = request.url();
+  if (!url.startsWith(service) && !/^(data|blob):/.test(url)) troubles.push(`asks ${url}`);
+});
+
+/// Pixels of the picture near a colour: their share, and their middle in parts of the picture.
+const pixels = (colour) => page.evaluate((wanted) => {
+  const source = document.querySelector('.stage canvas');
+  const copy = document.createElement('canvas');
+  [copy.width, copy.height] = [source.width, source.height];
+  const drawing = copy.getContext('2d');
+  drawing.drawImage(source, 0, 0);
+  const {data} = drawing.getImageData(0, 0, copy.width, copy.height);
+  let count = 0, x = 0, y = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    const distance = Math.hypot(...wanted.map((value, channel) => value - data[i + channel]));
+    if (distance > 60) continue;
+    ++count;
+    x += (i / 4) % copy.width;
+    y += Math.floor(i / 4 / copy.width);
+  }
+  return {
+    share: count / (copy.width * copy.height),
+    x: x / count / copy.width,
+    y: y / count / copy.height
+  };
+}, colour);
+
+const isMiddle = ({x, y}) => Math.abs(x - 0.5) < kNearMiddle && Math.abs(y - 0.5) < kNearMiddle;
+
+/// The picture as text, to see whether it changed.
+const picture = () => page.evaluate(async () => {
+  await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+  return document.querySelector('.stage canvas').toDataURL();
+});
+
+/// Waits until the picture stays as it is.
+async function quiet() {
+  let before = await picture();
+  for (let i = 0; i < 60; ++i) {
+    await page.waitForTimeout(250);
+    const now = await picture();
+    if (now === before) return;
+    before = now;
+  }
+}
+
+async function accessible(name) {
+  for (const colorScheme of ['light', 'dark']) {
+    await page.emulateMedia({colorScheme});
+    await page.evaluate(axe);
+    const {violations} = await page.evaluate(() => window.axe.run());
+    const text = violations.map(({id, nodes}) => `${id} ${nodes[0].html}`).join('; ');
+    check(violations.length === 0, `${name}, ${colorScheme}: axe finds nothing (${text})`);
+  }
+  await page.emulateMedia({colorScheme: 'light'});
+}
+
+const shot = (name) => page.screenshot({path: `${pictures}/${name}.png`});
+
+async function judgeAndStore() {
+  await page.goto(service);
+  await accessible('the first page');
+  await page.setInputFiles('#file', `${examples}/invalid.city.jsonl`);
+  await page.getByText('invalid.city.jsonl is invalid: 11 solids.').waitFor();
+  await page.getByRole('button', {name: 'Next finding'}).focus();
+  await page.keyboard.press('Enter');
+  await quiet();
+  const [place, facet] = [await pixels(kPlace), await pixels(kFacet)];
+  check(place.share > 0 && isMiddle(place), 'the camera flies to the place of the finding');
+  check(facet.share > 0.01, 'its facet is red');
+  check(
+      (await page.locator('.said').first().textContent()).startsWith('Finding 1 of '),
+      'the finding is said');
+  await shot('judged');
+  await accessible('a file that was judged');
+  const downloading = page.waitForEvent('download');
+  await page.getByRole('button', {name: 'Report (JSON)'}).click();
+  const report = JSON.parse(readFileSync(await (await downloading).path(), 'utf8'));
+  check(report.features.length === 11 && !report.validity, 'the report is downloaded');
+  await page.getByText('Store this file').click();
+  await page.getByLabel('Collection').fill('mine');
+  await page.getByRole('button', {name: 'Store', exact: true}).click();
+  await page.getByText('11 features stored in mine').waitFor();
+  await page.getByRole('link', {name: 'mine'}).click();
+  await page.waitForURL('**/collections/mine');
+  check(true, 'the file is stored, and its collection is a click away');
+}
+
+async function refuse() {
+  await page.goto(`${service}validate`);
+  const file = {name: 'broken.city.json', mimeType: 'application/json', buffer: Buffer.from('{"a')};
+  const before = troubles.length;
+  await page.setInputFiles('#file', file);
+  await page.getByText('broken.city.json: ').waitFor();
+  check(
+      /line 1, column 4/.test(await page.getByRole('status').first().textContent()),
+      'a broken file is refused with the reason');
+  troubles.splice(before);  // the browser logs the status 400
+}
+
+async function list() {
+  await page.goto(`${service}collections`);
+  await accessible('the list of collections');
+  await page.getByLabel('Only rows with').fill('DELF');
+  const rows = await page.locator('table tr:visible').count();
+  check(rows === 2, 'the list of collections is filtered');
+}
+
+async function city() {
+  await page.goto(`${service}collections/delft`);
+  await page.waitForFunction(() => document.querySelector('.said')?.textContent === '');
+  await quiet();
+  check((await pixels([0x9f, 0x50, 0x3e])).share > 0.005, 'roofs are seen');
+  await shot('city');
+  await accessible('a collection');
+  await page.getByLabel('From above').check();
+  await quiet();
+  check((await pixels([0x9f, 0x50, 0x3e])).share > 0.005, 'roofs are seen from above');
+  await shot('city-from-above');
+  await page.getByLabel('From above').uncheck();
+  await page.getByRole('button', {name: 'Next finding'}).click();
+  await page.getByText('1 of 7 that are not proven').waitFor();
+  await quiet();
+  const chosen = await pixels(kChosen);
+  check(chosen.share > 0.01 && isMiddle(chosen), 'the next feature with findings is flown to');
+  await shot('city-finding');
+  const id = await page.locator('.side h2').textContent();
+  const box = await page.locator('.stage canvas').boundingBox();
+  await page.mouse.click(box.x + box.width * chosen.x, box.y + box.height * chosen.y);
+  await quiet();
+  check(await page.locator('.side h2').textContent() === id, 'a click finds what is seen there');
+  const before = await picture();
+  await page.locator('.stage canvas').focus();
+  await page.keyboard.press('ArrowLeft');
+  const turned = await picture();
+  await page.keyboard.press('+');
+  check(turned !== before && await picture() !== turned, 'keys turn and zoom');
+  await page.locator('.side li a').first().click();
+  await page.waitForURL('**/items/**');
+  await page.getByText('Finding 1 of ').waitFor();
+  await quiet();
+  check((await pixels(kPlace)).share > 0, 'the page of a feature shows its finding');
+  await shot('item');
+  await accessible('a feature');
+  const whole = await picture();
+  await page.getByLabel('Cut at this height').fill('40');
+  check(await picture() !== whole, 'a cut takes away what is above');
+}
+
+try {
+  await judgeAndStore();
+  await refuse();
+  await list();
+  await city();
+} catch (error) {
+  check(false, String(error));
+  await shot('failure');
+}
+check(troubles.length === 0, `the browser has nothing to complain of (${troubles.join('; ')})`);
+await browser.close();
+console.log(JSON.stringify(seen));

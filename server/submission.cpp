@@ -94,11 +94,14 @@ Problem unsupported_type(AcceptedFormats accepted) {
   return Problem{415, "unsupported", "send a body of one of these types: " + known, {}, {}, {}, {}};
 }
 
-/// The media type that a request states for its body; "" when it leaves that to the content.
+/// The media type that a request states for its body; "" when it leaves that to the content, as
+/// curl does, which calls each body a form unless it is told otherwise.
 std::string stated_type(const RoutedRequest& request) {
   const std::string* content_type = request.request.header("content-type");
   std::string type = content_type == nullptr ? "" : media_type(*content_type);
-  return type == "application/octet-stream" ? "" : type;
+  const bool is_any =
+      type == "application/octet-stream" || type == "application/x-www-form-urlencoded";
+  return is_any ? "" : type;
 }
 
 /// The format of a body; nullopt when f= and Content-Type name no accepted format. Without both,

@@ -21,7 +21,6 @@
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
 #include "codec/explain.h"
-#include "formats/gml/city/city.h"
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
 #include "validate/finding_kinds.h"
@@ -498,17 +497,6 @@ void tell_notes(const std::string& file, const Document& document) {
   }
 }
 
-/// A city model with its closed surfaces as solids.
-Result<Document> with_surfaces_as_solids(const Document& city) {
-  const auto text = formats::write_document(city, Format::city_json);
-  if (!text) return text.error();
-  formats::ReadOptions options;
-  options.limits.bytes = ~0ULL;
-  options.split_features = false;
-  options.surfaces = formats::Surfaces::as_solids;
-  return formats::read_document(*text, Format::city_json, options);
-}
-
 /// Makes geometries of type Solid of the surfaces that were read as solids.
 Status make_solids(const std::string& file, Document& document) {
   const auto turned = formats::turn_surfaces_into_solids(document);
@@ -535,13 +523,11 @@ Exit run(const ConvertCommand& command) {
   const auto whole = read_argument(command.input);
   if (!whole) return fail(command.input, whole.error());
   if (makes_city_of_gml(command, *whole)) {
-    auto city = formats::city_model_of_gml(whole->bytes, options.limits);
+    options.surfaces = surface_rule(command.surfaces).reading;
+    auto city = pipeline::read_to_convert(whole->bytes, Format::gml, Format::city_json, options);
     if (!city) return fail(command.input, city.error());
-    tell_notes(command.input, city->model);
-    if (command.surfaces == "ignore") return save_converted(command, std::move(city->model));
-    auto again = with_surfaces_as_solids(city->model);
-    if (!again) return fail(command.input, again.error());
-    return save_converted(command, *std::move(again));
+    tell_notes(command.input, *city);
+    return save_converted(command, *std::move(city));
   }
   options.surfaces = surface_rule(command.surfaces).reading;
   auto input = load_input(whole->name, whole->bytes, options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "formats/gml/city/city.h"
 #include "pipeline/pipeline.h"
 #include "tessellate/facets.h"
 
@@ -51,7 +52,28 @@ Result<Solid> without_holes(const Solid& source) {
   return Solid::make(std::move(arrays), solid.lattice(), solid.srid());
 }
 
+/// A city model with its closed surfaces as solids, and the notes that it had.
+Result<Document> with_surfaces_as_solids(const Document& city, formats::ReadOptions options) {
+  const auto text = formats::write_document(city, Format::city_json);
+  if (!text) return text.error();
+  options.limits.bytes = ~0ULL;  // the GML document was within the limit
+  auto again = formats::read_document(*text, Format::city_json, options);
+  if (again) again->notes.insert(again->notes.begin(), city.notes.begin(), city.notes.end());
+  return again;
+}
+
 }  // namespace
+
+Result<Document> read_to_convert(ByteView bytes, Format from, Format to,
+                                 formats::ReadOptions options) {
+  options.split_features = false;
+  const bool is_city = to == Format::city_json || to == Format::city_json_seq;
+  if (from != Format::gml || !is_city) return formats::read_document(bytes, from, options);
+  auto city = formats::city_model_of_gml(bytes, options.limits);
+  if (!city) return std::move(city).error();
+  if (options.surfaces != formats::Surfaces::as_solids) return std::move(city->model);
+  return with_surfaces_as_solids(city->model, options);
+}
 
 Result<Bytes> convert_document(const Document& document, Format format) {
   const bool keeps_holes = format != Format::obj && format != Format::off;

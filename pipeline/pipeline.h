@@ -262,6 +262,12 @@ Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers
 Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
                              const IngestOptions& options);
 
+/// Reads a document, whole, that is to be written as `to`. A GML document that becomes a city model
+/// keeps more of it than its solids, and its notes say what has no place there. Errors: those of
+/// formats::read_document().
+Result<Document> read_to_convert(ByteView bytes, Format from, Format to,
+                                 formats::ReadOptions options);
+
 /// The document in another format; facets with holes become triangles where the format has no holes
 /// (OBJ, OFF). Errors: those of write_document(); not_encodable naming a facet that has no
 /// triangulation.

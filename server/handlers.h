@@ -91,6 +91,9 @@ Response get_tileset(const RoutedRequest& request);
 Response get_tile(const RoutedRequest& request);
 Response get_export(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
+Response post_convert(const RoutedRequest& request);
+Response post_encode(const RoutedRequest& request);
+Response post_decode(const RoutedRequest& request);
 
 /// The answer with a problem that has no further members.
 Response refuse(unsigned status, std::string kind, std::string detail);

@@ -121,6 +121,14 @@ const std::vector<Route>& general_routes() {
        read,
        post_validate,
        {std::begin(kValidateParameters), std::end(kValidateParameters)}},
+      {"POST", "/convert", computing, read, post_convert, {"f", "to", "surfaces"}},
+      {"POST",
+       "/encode",
+       computing,
+       read,
+       post_encode,
+       {std::begin(kSubmitParameters), std::end(kSubmitParameters)}},
+      {"POST", "/decode", computing, read, post_decode, {"f", "to"}},
   };
   return table;
 }

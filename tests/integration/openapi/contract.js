@@ -103,9 +103,10 @@ function requestsOf(path, method, operation) {
   parts.headers.Accept = fc.option(
       fc.constantFrom('*/*', 'text/html', 'image/png', ...answers), {nil: undefined, freq: 2});
   if (operation.requestBody) {
-    parts.headers['Content-Type'] = fc.option(
-        fc.constantFrom(...Object.keys(operation.requestBody.content), 'image/png'),
-        {nil: undefined, freq: 4});
+    const {content} = operation.requestBody.$ref ? at(operation.requestBody.$ref.slice(1)) :
+                                                   operation.requestBody;
+    parts.headers['Content-Type'] =
+        fc.option(fc.constantFrom(...Object.keys(content), 'image/png'), {nil: undefined, freq: 4});
   }
   return fc.record({
     values: fc.record(parts.values),

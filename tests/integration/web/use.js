@@ -133,6 +133,16 @@ async function refuse() {
   troubles.splice(before);  // the browser logs the status 400
 }
 
+async function otherFormats() {
+  await page.goto(`${service}validate`);
+  await page.setInputFiles('#file', `${examples}/../tests/golden/findings/103.gml`);
+  await page.getByText('103.gml is invalid').waitFor();
+  await page.getByRole('button', {name: 'Next finding'}).click();
+  await quiet();
+  check(isMiddle(await pixels(kPlace)), 'the finding of a GML document is flown to');
+  check((await pixels(kFacet)).share > 0.01, 'its facet is red');
+}
+
 async function list() {
   await page.goto(`${service}collections`);
   await accessible('the list of collections');
@@ -185,6 +195,7 @@ async function city() {
 try {
   await judgeAndStore();
   await refuse();
+  await otherFormats();
   await list();
   await city();
 } catch (error) {

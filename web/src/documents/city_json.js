@@ -2,9 +2,10 @@
 // City models as facets that can be drawn: CityJSON and CityJSONSeq.
 //
 // A model is {features, crs}; a feature {id, objects}; an object {id, type, geometries}; a geometry
-// {type, lod, facets}; a facet {pointer, rings, surface}: the JSON Pointer of the facet in its
-// document (in a CityJSONSeq, in the line of its feature), rings of positions in the coordinates of
-// the document, and the type of its semantic surface or null.
+// {type, lod, facets}; a facet {pointer, path, rings, surface}: the JSON Pointer of the facet in
+// its document (in a CityJSONSeq, in the line of its feature), its path as val3dity's reports have
+// it, rings of positions in the coordinates of the document, and the type of its semantic surface
+// or null.
 
 /// How many lists are around a facet in the boundaries of a type of geometry.
 const kDepths = {
@@ -41,21 +42,28 @@ function placer(vertices, transform) {
   return (index) => vertices[index]?.map((step, axis) => step * scale[axis] + translate[axis]);
 }
 
-/// The facets of a geometry; `place` gives the position of a vertex.
-function facetsOf(geometry, pointer, place) {
+/// The facets of a geometry; `pointer` and `path` name it, `place` gives the position of a vertex.
+function facetsOf(geometry, {pointer, path}, place) {
   const depth = kDepths[geometry.type];
   const facets = [];
   if (!depth || !Array.isArray(geometry.boundaries)) return facets;
   eachFacet(geometry.boundaries, depth, (rings, indices) => facets.push({
     pointer: `${pointer}/boundaries/${indices.join('/')}`,
+    path: path + facetPath(indices),
     rings: rings.map((ring) => ring.map(place).filter(Boolean)),
     surface: surfaceType(geometry.semantics, indices)
   }));
   return facets;
 }
 
+/// The end of the path of a facet: its solid, shell and place in the shell.
+function facetPath(indices) {
+  const [face, shell = 0, solid = 0] = [...indices].reverse();
+  return `|solid=${solid}|shell=${shell}|face=${face}`;
+}
+
 /// The facets of an instance of a geometry template.
-function instanceOf(geometry, templates, pointer, place) {
+function instanceOf(geometry, templates, names, place) {
   const template = templates?.templates?.[geometry.template];
   const anchor = place(geometry.boundaries?.[0]);
   const matrix = geometry.transformationMatrix;
@@ -68,8 +76,8 @@ function instanceOf(geometry, templates, pointer, place) {
         (row) => matrix[4 * row] * at[0] + matrix[4 * row + 1] * at[1] +
             matrix[4 * row + 2] * at[2] + matrix[4 * row + 3] + anchor[row]);
   };
-  const facets = facetsOf(template, pointer, placeTemplate);
-  for (const facet of facets) facet.pointer = pointer;  // findings name the instance alone
+  const facets = facetsOf(template, names, placeTemplate);
+  for (const facet of facets) facet.pointer = names.pointer;  // findings name the instance alone
   return {type: geometry.type, lod: template.lod, facets};
 }
 
@@ -82,14 +90,17 @@ function objectsOf(document, head) {
              type: object.type,
              top: object.parents?.[0] ?? null,
              geometries: (object.geometry ?? []).map((geometry, number) => {
-               const pointer = `/CityObjects/${escaped(id)}/geometry/${number}`;
+               const names = {
+                 pointer: `/CityObjects/${escaped(id)}/geometry/${number}`,
+                 path: `coid=${id}|geom=${number}`
+               };
                if (geometry.type === 'GeometryInstance') {
-                 return instanceOf(geometry, templates, pointer, place);
+                 return instanceOf(geometry, templates, names, place);
                }
                return {
                  type: geometry.type,
                  lod: String(geometry.lod ?? ''),
-                 facets: facetsOf(geometry, pointer, place)
+                 facets: facetsOf(geometry, names, place)
                };
              })
            }));

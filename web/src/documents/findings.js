@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Findings of reports as one list.
 //
-// An entry is {feature, code, name, severity, text, hint, pointer, other, witness}.
+// An entry is {feature, code, name, severity, text, hint, pointer, other, witness}; pointers are
+// paths where the document has no JSON Pointers.
 
 /// Units of sizes; numbers of things are in the text of a finding already.
 const kUnits = new Set(['m', 'm2', 'm3', 'degrees']);
+
+/// The path of the facet in one of the two parts of an id; null without a facet.
+const facetPath = (id) => id?.match(/^.*\|face=\d+/)?.[0] ?? null;
 
 function entry(feature, finding) {
   const measured = kUnits.has(finding.unit) && Number.isFinite(finding.measured) ?
@@ -17,8 +21,8 @@ function entry(feature, finding) {
     severity: finding.severity,
     text: (finding.info || finding.summary) + measured,
     hint: finding.hint ?? '',
-    pointer: finding.pointer ?? null,
-    other: finding.other_pointer ?? null,
+    pointer: finding.pointer ?? facetPath(finding.id?.split('&&')[0]),
+    other: finding.other_pointer ?? facetPath(finding.id?.split('&&')[1]),
     witness: finding.witness ?? null
   };
 }

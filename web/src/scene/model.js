@@ -107,6 +107,7 @@ export class FacetModel {
           const isShown = lod === null ? Number(geometry.lod) === highest : geometry.lod === lod;
           for (const facet of isShown ? geometry.facets : []) {
             facets.set(facet.pointer, facet);
+            facets.set(facet.path, facet);
             shown.push(facet);
           }
         }

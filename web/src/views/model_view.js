@@ -37,8 +37,9 @@ function lodOf(features, finding) {
     if (feature.id !== finding.feature) continue;
     for (const object of feature.objects) {
       for (const geometry of object.geometries) {
-        const start = geometry.facets[0]?.pointer.split('/boundaries')[0];
-        if (start && (finding.pointer ?? '').startsWith(start)) return geometry.lod;
+        const isItsFacet = ({pointer, path}) =>
+            path === finding.pointer || `${finding.pointer}/`.startsWith(`${pointer}/`);
+        if (geometry.facets.some(isItsFacet)) return geometry.lod;
       }
     }
   }

@@ -17,6 +17,7 @@ const kReports = [
   ['findings.geojson', 'application/geo+json', 'Findings as a layer (GeoJSON)']
 ];
 
+const kAnyType = 'application/octet-stream';  // the service looks at the first bytes
 const typeOf = (name) =>
     kTypes.get(name.toLowerCase().match(/\.[a-z]+$/)?.[0] ?? '') ?? 'application/octet-stream';
 
@@ -81,6 +82,7 @@ class Upload {
   async take(file) {
     if (!file) return;
     this.result.replaceChildren();
+    this.stored = null;  // the document as a city model
     this.progress.hidden = false;
     this.progress.value = 0;
     this.state.textContent = `Sending ${file.name} (${size(file.size)})`;
@@ -108,7 +110,9 @@ class Upload {
     const findings = findingsOfReport(report);
     let model;
     try {
-      model = await this.#modelOf(file, report);
+      const text = await this.#cityModelOf(file, report);
+      model = readCityModel(text);
+      this.stored = new File([text], file.name, {type: kAnyType});
     } catch (error) {
       this.state.append(` There is no picture: ${error.message}.`);
       model = {features: []};
@@ -116,15 +120,15 @@ class Upload {
     this.view = new ModelView(view, model.features, findings);
   }
 
-  /// The document as facets, converted by the service if it is no city model.
-  async #modelOf(file, report) {
-    if (report.input_file_type.startsWith('CityJSON')) return readCityModel(await file.text());
+  /// The document as a city model, which the service makes of it if it is none.
+  async #cityModelOf(file, report) {
+    if (report.input_file_type.startsWith('CityJSON')) return file.text();
     const answer = await ask(kService + 'convert', {
       method: 'POST',
       body: file,
       headers: {'Content-Type': typeOf(file.name), Accept: 'application/city+json'}
     });
-    return readCityModel(await answer.text());
+    return answer.text();
   }
 
   #counts(report) {
@@ -185,7 +189,7 @@ class Upload {
       try {
         const answer = await ask(
             `${address}/items?invalid=${policy.value}`,
-            {method: 'POST', body: file, headers: {'Content-Type': typeOf(file.name)}});
+            {method: 'POST', body: this.stored ?? file, headers: {'Content-Type': kAnyType}});
         const outcome = await answer.json();
         said.replaceChildren(
             `${counted(outcome.stored, 'feature')} stored in `,

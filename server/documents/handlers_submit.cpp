@@ -2,8 +2,6 @@
 //
 // Handlers that validate: POST items (and store), POST /validate.
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -12,100 +10,14 @@
 #include "pipeline/streaming/ingestion.h"
 #include "pipeline/validate_stream.h"
 #include "report/feature_report.h"
+#include "server/documents/rules.h"
+#include "server/documents/submission.h"
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
 #include "server/metrics/metrics.h"
-#include "server/submission.h"
 
 namespace watertight::server {
 namespace {
-
-pipeline::IngestOptions ingest_options(const RoutedRequest& request) {
-  pipeline::IngestOptions options;
-  options.threads = request.service.options.threads_per_request;
-  options.certify.limits = request.service.options.limits;
-  options.certify.limits.findings = request.service.options.largest_findings;
-  options.certify.ladder.cancel = request.is_cancelled;
-  options.is_cancelled = request.is_cancelled;
-  return options;
-}
-
-/// The answer 422; the report in it says what is wrong.
-Response refused_document(const pipeline::IngestOutcome& outcome) {
-  Problem problem;
-  problem.status = 422;
-  problem.extension = "{\"report\":" + pipeline::outcome_json(outcome) + "}";
-  if (outcome.verdict == Verdict::invalid) {
-    problem.kind = "invalid-solids";
-    problem.detail = "the document has solids that are not valid; nothing was stored";
-  } else {
-    problem.kind = "undecided-solids";
-    problem.detail =
-        "no engine could decide whether all solids are valid; nothing was stored, trying again "
-        "can help";
-    problem.headers.push_back({"Retry-After", "60"});
-  }
-  return to_response(problem);
-}
-
-Result<bool> parse_flag(const Target& target, std::string_view name) {
-  const std::string* text = target.parameter(name);
-  if (text == nullptr || *text == "false") return false;
-  if (*text == "true") return true;
-  return Error{ErrorCode::invalid_argument, std::string(name) + " is true or false"};
-}
-
-/// Sets `value` from a parameter in (0, limit]; leaves `value` when there is no such parameter.
-Status read_tolerance(const Target& target, std::string_view name, double limit, double& value) {
-  const std::string* text = target.parameter(name);
-  if (text == nullptr) return Done{};
-  double number = 0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
-  if (error != std::errc{} || end != text->data() + text->size() || !(number > 0) ||
-      number > limit) {
-    return Error{ErrorCode::invalid_argument, std::string(name) + " is a number above 0, at most " +
-                                                  std::to_string(static_cast<int>(limit))};
-  }
-  value = number;
-  return Done{};
-}
-
-/// The rule for surfaces that are stored: as they came, or closed ones as solids.
-Result<formats::Surfaces> stored_surfaces(const Target& target) {
-  const std::string* text = target.parameter("surfaces");
-  if (text == nullptr || *text == "ignore") return formats::Surfaces::ignore;
-  if (*text == "as-solids") return formats::Surfaces::as_solids;
-  return Error{ErrorCode::invalid_argument,
-               "surfaces is ignore or as-solids where they are stored"};
-}
-
-/// Reads the rules by which solids are judged: planarity, planarity-angle, overlap, proof, strict.
-Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
-  CertifyOptions& options = ingest.certify;
-  constexpr double kWidestMetres = 1000;
-  constexpr double kWidestDegrees = 90;
-  Status status =
-      read_tolerance(target, "planarity", kWidestMetres, options.tolerances.planarity_metres);
-  if (!status) return status;
-  status = read_tolerance(target, "planarity-angle", kWidestDegrees,
-                          options.tolerances.planarity_degrees);
-  if (!status) return status;
-  status = read_tolerance(target, "overlap", kWidestMetres, ingest.groups.overlap_metres);
-  if (!status) return status;
-  const auto exact_overlaps = parse_flag(target, "exact-overlaps");
-  if (!exact_overlaps) return exact_overlaps.error();
-  ingest.groups.do_steps_warn = !*exact_overlaps;
-  const auto strict = parse_flag(target, "strict");
-  if (!strict) return strict.error();
-  options.ladder.strict = *strict;
-  const std::string* proof = target.parameter("proof");
-  if (proof == nullptr || *proof == "tetrahedralization") return Done{};
-  if (*proof != "boundary") {
-    return Error{ErrorCode::invalid_argument, "proof is tetrahedralization or boundary"};
-  }
-  options.proof = Proof::boundary;
-  return Done{};
-}
 
 std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::TextSink sink,
                                                    report::ReportHead head) {
@@ -250,7 +162,7 @@ Response post_items(const RoutedRequest& request) {
   const auto counts = ingestion.finish();
   if (!counts) return to_response(to_problem(counts.error()));
   const auto outcome = std::move(keeper).outcome(*counts, ingestion.versions());
-  return ingestion.is_refused() ? refused_document(outcome)
+  return ingestion.is_refused() ? refused_document(outcome, "nothing was stored")
                                 : answer_of(outcome, options.collection);
 }
 

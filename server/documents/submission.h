@@ -34,6 +34,20 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
                            const std::string& header,
                            formats::Surfaces surfaces = formats::Surfaces::ignore);
 
+/// A document that is read whole, to be written in another form; or the problem with it.
+struct Conversion {
+  std::unique_ptr<BudgetShare> memory;
+  std::optional<Document> document;
+  std::optional<Problem> problem;
+};
+/// Reads the document in a body, of any format, to write it as `to`; nothing: with its text, to be
+/// written as it was.
+Conversion read_conversion(const RoutedRequest& request, std::optional<Format> to,
+                           formats::Surfaces surfaces);
+
+/// The media type of documents of a format; "application/octet-stream" where there is none.
+std::string_view media_type_of(Format format);
+
 /// The memory for a body that is a Watertight file, which has no reader; or the problem: 413, 503.
 Submission container_submission(const RoutedRequest& request);
 

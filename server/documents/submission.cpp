@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "server/submission.h"
+#include "server/documents/submission.h"
 
 #include <algorithm>
 #include <array>
@@ -130,6 +130,14 @@ bool is_sequence(std::string_view body) {
          Json::accept(line);
 }
 
+/// The format of a body that is said to have `stated`: JSON can be a sequence, and a sequence a
+/// feature alone.
+Format format_of_content(Format stated, std::string_view body) {
+  if (stated == Format::city_json && is_sequence(body)) return Format::city_json_seq;
+  if (stated == Format::city_json_seq && formats::is_lone_feature(body)) return Format::city_json;
+  return stated;
+}
+
 std::uint64_t longest_line(std::string_view text) {
   std::size_t longest = 0;
   while (!text.empty()) {
@@ -169,7 +177,7 @@ constexpr std::uint64_t kMemoryOfText = 40;
 /// Takes the memory for so many bytes of text that are values at one time. Returns the problem if
 /// there is not so much.
 std::optional<Problem> take_memory(const RoutedRequest& request, std::uint64_t text_bytes,
-                                   Submission& submission) {
+                                   std::unique_ptr<BudgetShare>& memory) {
   Budget* budget = request.service.document_memory;
   if (budget == nullptr) return std::nullopt;
   const std::uint64_t bytes = text_bytes * kMemoryOfText;
@@ -179,8 +187,8 @@ std::optional<Problem> take_memory(const RoutedRequest& request, std::uint64_t t
     return Problem{413, "limit-exceeded",
                    "a document that is read whole has at most " + most + " bytes" + advice};
   }
-  submission.memory = std::make_unique<BudgetShare>(*budget, bytes);
-  if (submission.memory->is_granted()) return std::nullopt;
+  memory = std::make_unique<BudgetShare>(*budget, bytes);
+  if (memory->is_granted()) return std::nullopt;
   Problem problem{503, "busy", std::string("too many large documents are being read") + advice};
   problem.headers.push_back({"Retry-After", "5"});
   return problem;
@@ -227,7 +235,7 @@ Submission container_submission(const RoutedRequest& request) {
   Submission submission;
   submission.problem = take_memory(
       request, std::min(limits.expanded_from(request.request.body.size()), limits.feature_bytes),
-      submission);
+      submission.memory);
   return submission;
 }
 
@@ -252,13 +260,10 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   const bool is_stored = accepted == AcceptedFormats::city_models;
   options.keep_text = is_stored || surfaces != formats::Surfaces::as_solids;
   options.surfaces = surfaces;
-  if (*format == Format::city_json && is_sequence(body)) format = Format::city_json_seq;
-  if (*format == Format::city_json_seq && formats::is_lone_feature(body)) {
-    format = Format::city_json;
-  }
+  format = format_of_content(*format, body);
   const bool is_sequence_body = *format == Format::city_json_seq;
   submission.problem =
-      take_memory(request, is_sequence_body ? longest_line(body) : body.size(), submission);
+      take_memory(request, is_sequence_body ? longest_line(body) : body.size(), submission.memory);
   if (submission.problem) return submission;
   auto reader = open_body(request, *format, header, is_stored, options);
   if (reader) {
@@ -267,6 +272,40 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
     submission.problem = problem_of_body(reader.error());
   }
   return submission;
+}
+
+std::string_view media_type_of(Format format) {
+  for (const FormatName& name : kNames) {
+    if (name.format == format && !name.type.empty() && name.type != kJson) return name.type;
+  }
+  return "application/octet-stream";
+}
+
+Conversion read_conversion(const RoutedRequest& request, std::optional<Format> to,
+                           formats::Surfaces surfaces) {
+  Conversion conversion;
+  const auto stated = stated_format(request, AcceptedFormats::all);
+  if (!stated) {
+    conversion.problem = unsupported_type(AcceptedFormats::all);
+    return conversion;
+  }
+  const std::string& body = request.request.body;
+  conversion.problem = take_memory(request, body.size(), conversion.memory);
+  if (conversion.problem) return conversion;
+  formats::ReadOptions options;
+  options.limits = request.service.options.limits;
+  options.split_features = false;
+  options.keep_text = !to;
+  options.surfaces = surfaces;
+  const Format from = format_of_content(*stated, body);
+  auto document = to ? pipeline::read_to_convert(as_bytes(body), from, *to, options)
+                     : formats::read_document(as_bytes(body), from, options);
+  if (document) {
+    conversion.document = *std::move(document);
+  } else {
+    conversion.problem = problem_of_body(document.error());
+  }
+  return conversion;
 }
 
 }  // namespace watertight::server

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The rules of requests that judge documents, and the refusal of documents that break them.
+// Internal to server/.
+#pragma once
+
+#include <string_view>
+
+#include "pipeline/pipeline.h"
+#include "server/handlers.h"
+
+namespace watertight::server {
+
+/// The limits, threads and cancel of a request.
+pipeline::IngestOptions ingest_options(const RoutedRequest& request);
+
+/// Reads the rules by which solids are judged: planarity, planarity-angle, overlap, exact-overlaps,
+/// proof, strict. Errors: invalid_argument.
+Status read_rules(const Target& target, pipeline::IngestOptions& ingest);
+
+/// The rule for surfaces that are kept: as they came, or closed ones as solids. Errors:
+/// invalid_argument.
+Result<formats::Surfaces> stored_surfaces(const Target& target);
+
+/// The answer 422 to a document that is not valid, or undecided; the report in it says why, and
+/// `consequence` what did not happen ("nothing was stored").
+Response refused_document(const pipeline::IngestOutcome& outcome, std::string_view consequence);
+
+}  // namespace watertight::server

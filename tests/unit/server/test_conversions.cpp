@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// POST /convert, /encode and /decode: documents in other forms, which nothing stores.
+#include <catch2/catch_test_macros.hpp>
+
+#include "tests/files.h"
+#include "tests/unit/server/routes_fixture.h"
+
+namespace watertight {
+namespace {
+
+using samples::Json;
+
+/// Requests with any header fields.
+class Fixture : public samples::RoutesFixture {
+ public:
+  server::Response send_body(const std::string& target, std::string body,
+                             std::vector<server::HeaderField> headers = {}) const {
+    return send({"POST", target, std::move(headers), std::move(body)});
+  }
+};
+
+constexpr const char* kGml = "application/gml+xml";
+
+std::string golden(const std::string& name) {
+  return test::read_text(std::string(WATERTIGHT_SOURCES) + "/tests/golden/findings/" + name);
+}
+
+TEST_CASE_METHOD(Fixture, "an encoded document is decoded byte for byte, whatever its format") {
+  const std::string city = test::read_text(WATERTIGHT_SOURCES "/examples/delft.city.jsonl");
+  for (const auto& [text, type] : {std::pair{city, "application/city+json-seq"},
+                                   std::pair{golden("102.city.json"), "application/city+json"},
+                                   std::pair{golden("103.gml"), kGml}}) {
+    INFO(type);
+    const auto encoded = send_body("/encode?invalid=keep", text, {{"content-type", type}});
+    REQUIRE(encoded.status == 200);
+    CHECK(encoded.content_type == "application/vnd.watertight");
+    const auto decoded = send_body("/decode", encoded.body, {{"accept", "*/*"}});
+    REQUIRE(decoded.status == 200);
+    CHECK(decoded.content_type == type);
+    CHECK(decoded.body == text);
+    CHECK(send_body("/decode?to=cityjson", encoded.body).body ==
+          send_body("/convert?to=cityjson", text, {{"content-type", type}}).body);
+  }
+}
+
+TEST_CASE_METHOD(Fixture, "a document that is not valid is not encoded unless that is wanted") {
+  const std::string text = golden("102.city.json");
+  const auto refused = send_body("/encode", text);
+  CHECK(refused.status == 422);
+  const Json problem = Json::parse(refused.body);
+  CHECK(problem["type"] == "urn:watertight:problem:invalid-solids");
+  CHECK(problem["detail"].get<std::string>().ends_with("nothing was encoded"));
+  CHECK(problem["report"]["counts"]["invalid"] == 1);
+  CHECK(send_body("/encode?invalid=keep", text).status == 200);
+  CHECK(send_body("/encode?invalid=perhaps", text).status == 400);
+  CHECK(send_body("/encode?planarity=-1", text).status == 400);
+}
+
+TEST_CASE_METHOD(Fixture, "a GML document becomes a city model, with notes of what has no place") {
+  const auto converted = send_body("/convert", golden("103.gml"),
+                                   {{"content-type", kGml}, {"accept", "application/city+json"}});
+  REQUIRE(converted.status == 200);
+  CHECK(converted.content_type == "application/city+json");
+  const Json city = Json::parse(converted.body);
+  CHECK(city["CityObjects"]["sample"]["geometry"][0]["type"] == "Solid");
+}
+
+TEST_CASE_METHOD(Fixture, "a document is converted to each format that is written") {
+  const std::string text = golden("201.city.json");
+  for (const char* to : {"cityjson", "cityjsonseq", "obj", "off", "wkt", "ewkb"}) {
+    INFO(to);
+    const auto converted = send_body(std::string("/convert?to=") + to, text);
+    CHECK((converted.status == 200 || converted.status == 422));  // OFF has no several solids
+    CHECK(!converted.body.empty());
+  }
+  CHECK(send_body("/convert?to=wkt", text).body.starts_with("POLYHEDRALSURFACE Z"));
+  CHECK(send_body("/convert?to=gml", text).status == 406);
+  CHECK(send_body("/convert", text, {{"accept", "image/png"}}).status == 406);
+  CHECK(send_body("/convert", "{\"type\":").status == 400);
+  CHECK(send_body("/convert?surfaces=perhaps", text).status == 400);
+}
+
+TEST_CASE_METHOD(Fixture, "a body that is no Watertight file is not decoded") {
+  CHECK(send_body("/decode", golden("102.city.json")).status == 415);
+  const std::string text = golden("102.city.json");
+  std::string file = send_body("/encode?invalid=keep", text).body;
+  CHECK(send_body("/convert", file, {{"content-type", "application/vnd.watertight"}}).status ==
+        415);
+  CHECK(send_body("/decode", file.substr(0, file.size() / 2)).status == 400);
+  CHECK(send_body("/decode", file, {{"accept", "image/png"}}).status == 406);
+}
+
+TEST_CASE_METHOD(Fixture,
+                 "a body of the type that curl gives to each is known by its first bytes") {
+  const char* type = "application/x-www-form-urlencoded";
+  CHECK(send_body("/validate", golden("103.gml"), {{"content-type", type}}).status == 200);
+  CHECK(send_body("/validate", "a=b", {{"content-type", type}}).status == 415);
+}
+
+}  // namespace
+}  // namespace watertight

@@ -5,7 +5,9 @@
 #include <array>
 #include <optional>
 
+#include "archives/gzip.h"
 #include "base/checksum.h"
+#include "server/features/answer_coding.h"
 #include "server/features/links.h"
 #include "server/features/pages.h"
 #include "server/items/preconditions.h"
@@ -83,14 +85,29 @@ Response get_validate(const RoutedRequest& request) {
 }
 
 Response get_web_file(const RoutedRequest& request) {
-  for (const web::WebFile& file : web::files()) {
+  // Compressed once, when the first is asked for: all are asked for together.
+  static const std::vector<std::string> packed = [] {
+    std::vector<std::string> all;
+    for (const web::WebFile& file : web::files()) {
+      all.push_back(archives::gzip(file.text, archives::Effort::best));
+    }
+    return all;
+  }();
+  for (std::size_t i = 0; i < packed.size(); ++i) {
+    const web::WebFile& file = web::files()[i];
     if (file.name != request.target.segments[1]) continue;
     const std::string etag = etag_of(content_hash(as_bytes(file.text)), "web");
     if (auto unneeded = unless_needed(request.request, etag)) return *std::move(unneeded);
-    return Response{200,
-                    std::string(file.type),
-                    std::string(file.text),
-                    {{"ETag", etag}, {"Cache-Control", "no-cache"}}};
+    Response response{200,
+                      std::string(file.type),
+                      std::string(file.text),
+                      {{"ETag", etag}, {"Cache-Control", "no-cache"}, {"Vary", "Accept-Encoding"}}};
+    if (takes_gzip(request.request)) {
+      response.body = packed[i];
+      response.headers.front().value.insert(etag.size() - 1, kGzipTag);
+      response.headers.push_back({"Content-Encoding", "gzip"});
+    }
+    return response;
   }
   return refuse(404, "not-found", "there is no such file of the pages");
 }

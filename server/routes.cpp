@@ -5,6 +5,7 @@
 
 #include "pipeline/container.h"
 #include "server/access/gate.h"
+#include "server/features/answer_coding.h"
 #include "server/features/cors.h"
 #include "server/handlers.h"
 #include "server/metrics/metrics.h"
@@ -242,8 +243,13 @@ Response routed(const Service& service, const Request& request, const CancelPoll
 }  // namespace
 
 Response respond(const Service& service, const Request& request, const CancelPoll& is_cancelled) {
-  return with_leave_to_read(service.options.cors_origin, request,
-                            routed(service, request, is_cancelled));
+  const Route* route = route_of(request);
+  Response response = routed(service, request, is_cancelled);
+  // Answers that are made at once keep all others waiting, so nothing is computed for them.
+  if (route != nullptr && route->lane != Lane::quick) {
+    response = with_coding(request, std::move(response));
+  }
+  return with_leave_to_read(service.options.cors_origin, request, std::move(response));
 }
 
 namespace {

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <vector>
 
+#include "server/features/answer_coding.h"
+
 namespace watertight::server {
 namespace {
 
@@ -22,11 +24,14 @@ std::vector<std::string_view> tags_of(std::string_view list) {
   return tags;
 }
 
+/// Whether a tag, or that of its representation when it is compressed, is in a list.
 bool is_listed(std::string_view list, std::string_view etag, bool is_weak) {
+  std::string compressed(etag);
+  if (!compressed.empty()) compressed.insert(compressed.size() - 1, kGzipTag);
   for (std::string_view tag : tags_of(list)) {
     if (tag == "*") return true;
     if (is_weak && tag.starts_with("W/")) tag.remove_prefix(2);
-    if (tag == etag) return true;
+    if (tag == etag || tag == compressed) return true;
   }
   return false;
 }

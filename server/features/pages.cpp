@@ -289,7 +289,8 @@ std::string item_page(const std::string& collection, const Json& feature) {
       {"?f=obj", "OBJ"},
       {"?f=glb", "binary glTF"},
       {"?f=wt", "Watertight file"},
-      {"?f=proof", "Proof, measures and findings (JSON)"}};
+      {"?f=proof", "Proof, measures and findings (JSON)"},
+      {"?f=structure", "Tetrahedra, Steiner points and bytes (JSON)"}};
   for (const auto& [href, name] : kForms) {
     body.append("<li>").append(anchor(href, name)).append("</li>\n");
   }

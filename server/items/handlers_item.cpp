@@ -8,6 +8,7 @@
 
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
+#include "pipeline/stored/structure.h"
 #include "server/features/feature_text.h"
 #include "server/features/pages.h"
 #include "server/handlers.h"
@@ -24,7 +25,7 @@ struct ItemFormat {
   std::string_view type;
 };
 
-constexpr std::array<ItemFormat, 11> kFormats{{{"cityjson", kCityJson},
+constexpr std::array<ItemFormat, 12> kFormats{{{"cityjson", kCityJson},
                                                {"jsonfg", kJsonFg},
                                                {"html", kHtml},
                                                {"geojson", kGeoJson},
@@ -34,7 +35,8 @@ constexpr std::array<ItemFormat, 11> kFormats{{{"cityjson", kCityJson},
                                                {"glb", kGltf},
                                                {"wt", kContainer},
                                                {"blob", kBlob},
-                                               {"proof", kJson}}};
+                                               {"proof", kJson},
+                                               {"structure", kJson}}};
 
 std::optional<ItemFormat> chosen_format(const RoutedRequest& request) {
   const std::string* wanted = request.target.parameter("f");
@@ -103,7 +105,22 @@ Bytes bytes_of(std::string_view text) {
   return {bytes.begin(), bytes.end()};
 }
 
-Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
+/// The inside of the solids of a feature.
+Result<Bytes> structure_of(StoredFeature feature, const ItemRequest& item,
+                           const CancelPoll& is_cancelled) {
+  const std::size_t text_bytes = feature.skeleton.bytes.size();
+  const auto encoded = pipeline::unpack(std::move(feature), {}, pipeline::Reports::none);
+  if (!encoded) return encoded.error();
+  CertifyOptions options;
+  options.limits = item.service.options.limits;
+  options.ladder.cancel = is_cancelled;
+  const auto text = pipeline::structure_json(*encoded, text_bytes, item.service.workers, options);
+  if (!text) return text.error();
+  return bytes_of(*text + "\n");
+}
+
+Result<Bytes> represent(StoredFeature feature, const ItemRequest& item,
+                        const CancelPoll& is_cancelled) {
   const std::string_view format = item.format.parameter;
   if (item.is_geo_json()) {
     const std::uint32_t srid = feature.srid;
@@ -119,6 +136,7 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
   }
   if (format == "glb") return glb_of_feature(std::move(feature), item.service.options.limits);
   if (format == "blob") return blob_of(feature, item.solid, item.service.options.limits);
+  if (format == "structure") return structure_of(std::move(feature), item, is_cancelled);
   if (format == "proof") {
     const auto encoded = pipeline::unpack(std::move(feature));
     if (!encoded) return encoded.error();
@@ -143,13 +161,14 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item) {
 }
 
 /// The representation of a feature that was read, which the cache keeps.
-Response represented(StoredFeature feature, const ItemRequest& item) {
+Response represented(StoredFeature feature, const ItemRequest& item,
+                     const CancelPoll& is_cancelled) {
   const std::uint64_t version = feature.version;
   const std::vector<HeaderField> headers{
       {"ETag", etag_of(version, item.representation())},
       {"Vary", "Accept"},
       {"Content-Crs", content_crs(item.form.system, feature.srid)}};
-  auto body = represent(std::move(feature), item);
+  auto body = represent(std::move(feature), item, is_cancelled);
   if (!body) {
     Problem problem = to_problem(body.error());
     // The feature is there, but not in this format.
@@ -174,17 +193,17 @@ std::optional<Response> cached(const ItemRequest& item, std::uint64_t version) {
 }
 
 /// Reads the feature and makes its representation; leaves a large one to the lane for that.
-Response read_and_represent(const ItemRequest& item) {
+Response read_and_represent(const ItemRequest& item, const CancelPoll& is_cancelled) {
   auto feature = item.service.store->get(item.collection, item.id);
   if (!feature) return to_response(to_problem(feature.error()));
   if (item.format.parameter == "blob" || !is_large(*feature)) {
-    return represented(*std::move(feature), item);
+    return represented(*std::move(feature), item, is_cancelled);
   }
   const auto large = std::make_shared<StoredFeature>(*std::move(feature));
   Response response;
   response.further = std::make_shared<const FurtherWork>(
-      FurtherWork{Lane::computing, {}, [large, item](const CancelPoll&) {
-                    return represented(std::move(*large), item);
+      FurtherWork{Lane::computing, {}, [large, item](const CancelPoll& is_stopped) {
+                    return represented(std::move(*large), item, is_stopped);
                   }});
   return response;
 }
@@ -201,7 +220,7 @@ Response get_item(const RoutedRequest& request) {
         "(f=html), "
         "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), model/gltf-binary (f=glb), "
         "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs "
-        "and findings with f=proof");
+        "and findings with f=proof, the tetrahedra in its solids with f=structure");
   }
   const std::string* solid = request.target.parameter("solid");
   if (solid != nullptr && format->parameter != "blob") {
@@ -233,12 +252,12 @@ Response get_item(const RoutedRequest& request) {
   if (unneeded) return *std::move(unneeded);
   if (auto kept = cached(item, *version)) return *std::move(kept);
   Response response;
-  response.further = std::make_shared<const FurtherWork>(
-      FurtherWork{Lane::small, item.key(*version), [item, version = *version](const CancelPoll&) {
-                    // A request for the same may have been answered meanwhile.
-                    if (auto kept = cached(item, version)) return *std::move(kept);
-                    return read_and_represent(item);
-                  }});
+  response.further = std::make_shared<const FurtherWork>(FurtherWork{
+      Lane::small, item.key(*version), [item, version = *version](const CancelPoll& is_cancelled) {
+        // A request for the same may have been answered meanwhile.
+        if (auto kept = cached(item, version)) return *std::move(kept);
+        return read_and_represent(item, is_cancelled);
+      }});
   return response;
 }
 

@@ -42,6 +42,31 @@ def check_built_files():
     check(packed <= 1_000_000, f"all files together have {packed} bytes by gzip, at most 1,000,000")
 
 
+def volume(solid):
+    """The volume that the tetrahedra of a solid fill."""
+    total = 0
+    for tetrahedron in solid["tetrahedra"]:
+        o, *others = (solid["vertices"][index] for index in tetrahedron)
+        a, b, c = ([p - q for p, q in zip(corner, o)] for corner in others)
+        total += abs(a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+                     + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+    return total
+
+
+def check_insides(service):
+    """The tetrahedra of each solid fill the volume that its facets bound. (A facet that is not exactly planar can
+    be filled with other triangles than those by which volumes are measured.)"""
+    ask = lambda address: json.loads(service.request("GET", address)[1])  # noqa: E731
+    solids, worst = 0, 0.0
+    for feature in ask("/collections/delft/items?f=summary&limit=1000")["features"]:
+        address = f"/collections/delft/items/{feature['id']}?f="
+        measured = [solid["measures"]["volume"] for solid in ask(address + "proof")["solids"] if solid["proven"]]
+        filled = [volume(solid) for solid in ask(address + "structure")["solids"]]
+        worst = max([worst] + [abs(a - b) / a for a, b in zip(measured, filled, strict=True)])
+        solids += len(filled)
+    check(solids == 470 and worst < 1e-3, f"tetrahedra fill {solids} solids, to {worst:.1e} of their volume")
+
+
 def main():
     if not shutil.which("chromium"):
         print("there is no Chromium")
@@ -56,6 +81,7 @@ def main():
         status, _ = service.request("POST", "/collections/delft/items?invalid=keep",
                                     (ROOT / "examples/delft.city.jsonl").read_bytes())
         check(status == 201, "the service takes the features of Delft")
+        check_insides(service)
         done = subprocess.run(["node", "use.js", f"http://127.0.0.1:{service.port}/",
                                str(ROOT / "examples"), str(PICTURES)],
                               cwd=NODE, capture_output=True, text=True, timeout=400, check=False)

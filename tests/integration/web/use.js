@@ -190,6 +190,13 @@ async function city() {
   const whole = await picture();
   await page.getByLabel('Cut at this height').fill('40');
   check(await picture() !== whole, 'a cut takes away what is above');
+  await page.goto(`${service}collections/delft/items/NL.IMBAG.Pand.0503100000018420`);
+  await page.getByLabel('Inside and bytes').check();
+  await page.getByText(/[1-9]\d* tetrahedra/).waitFor();
+  await quiet();
+  check((await pixels([0x8f, 0xb8, 0xde])).share > 0.001, 'tetrahedra are seen');
+  await shot('inside');
+  await accessible('the inside of a feature');
 }
 
 try {

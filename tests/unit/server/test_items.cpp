@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Answers for one feature: tags, preconditions, ranges and the cache; and collections as a whole.
+#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -179,6 +181,51 @@ TEST_CASE_METHOD(Items,
   CHECK(get({{"range", "bytes=7-"}, {"if-range", etag}}).status == 200);
   CHECK(get({{"if-none-match", etag}}).status == 200);
   CHECK(get({{"if-match", etag}}).status == 412);
+}
+
+/// Six times the volume of a tetrahedron.
+double sixfold_volume(const Json& vertices, const Json& tetrahedron) {
+  std::array<std::array<double, 3>, 3> sides{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      sides[i][axis] = vertices[tetrahedron[i + 1].get<std::size_t>()][axis].get<double>() -
+                       vertices[tetrahedron[0].get<std::size_t>()][axis].get<double>();
+    }
+  }
+  const auto& [a, b, c] = sides;
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+TEST_CASE_METHOD(Items, "the inside of an item has the tetrahedra that fill its solids") {
+  const Json structure = Json::parse(item({}, "?f=structure").body);
+  const Json proof = Json::parse(item({}, "?f=proof").body);
+  CHECK(structure["id"] == "a");
+  REQUIRE(structure["solids"].size() == 1);
+  const Json& solid = structure["solids"][0];
+  CHECK(solid["rung"] == "delaunay");
+  CHECK(solid["vertices"].size() == 8);
+  CHECK(solid["steinerVertices"] == 0);
+  CHECK(solid["unrecoveredFaces"].empty());
+  double sixfold = 0;
+  for (const Json& tetrahedron : solid["tetrahedra"]) {
+    const double volume = sixfold_volume(solid["vertices"], tetrahedron);
+    CHECK(std::abs(volume) > 0);
+    sixfold += std::abs(volume);
+  }
+  CHECK(sixfold / 6 == proof["solids"][0]["measures"]["volume"].get<double>());
+  double bytes = 0;
+  for (const Json& part : solid["parts"]) bytes += part["bytes"].get<double>();
+  CHECK(std::abs(bytes - structure["bytes"]["solids"].get<double>()) < 0.1);
+  CHECK(structure["bytes"]["text"].get<double>() > 0);
+  // What is not proven has no inside.
+  REQUIRE(send({"POST",
+                "/collections/town/items?invalid=keep",
+                {},
+                samples::sequence({samples::feature("open", samples::kOpenFacets)})})
+              .status == 201);
+  const auto open = send({"GET", "/collections/town/items/open?f=structure", {}, ""});
+  CHECK(Json::parse(open.body)["solids"].empty());
 }
 
 TEST_CASE("exports are kept as files for a while, so many and so large") {

@@ -16,4 +16,8 @@ export const kPlaceColour = '#9b30ff';  // the place of a finding
 export const kUnprovenColour = '#d62f45';
 export const kChosenColour = '#ffd23f';
 
+export const kSteinerColour = '#e5243b';
+export const kMissingColour = '#1f5fd0';  // of faces that the Delaunay tetrahedralization lacks
+export const kTetrahedronColours = ['#8fb8de', '#f2c879', '#a8cf8e', '#d8a3c8', '#c9c2a5'];
+
 export const surfaceColour = (type) => kSurfaceColours.get(type) ?? kNoSurfaceColour;

@@ -7,6 +7,7 @@ import {checkBox, choice, counted, element, grouped} from '../page.js';
 import {surfaceColour} from '../scene/colours.js';
 import {FacetModel} from '../scene/model.js';
 import {stageIn} from '../scene/stage.js';
+import {tetrahedraOf} from '../scene/tetrahedra.js';
 
 import {FindingList} from './finding_list.js';
 
@@ -68,8 +69,8 @@ export class ModelView {
         element(
             'h2', {}, findings.length === 0 ? 'No findings' : counted(findings.length, 'finding')),
         this.list.root);
-    container.replaceChildren(
-        element('div', {class: 'viewer'}, this.tools, this.frame, side, this.legend));
+    this.root = element('div', {class: 'viewer'}, this.tools, this.frame, side, this.legend);
+    container.replaceChildren(this.root);
     this.stage = stageIn(this.frame, {
       label: 'Solids in 3D',
       onFrame: (stage) => {
@@ -137,7 +138,26 @@ export class ModelView {
         element('li', {}, `${grouped(this.model.count)} facets`),
         this.omitted > 0 ? element('li', {}, `${counted(this.omitted, 'feature')} not shown`) : '');
     this.#cut();
+    this.#showInside();
     this.stage.draw();
+  }
+
+  /// Shows what is in the solids instead of their facets: the solids of `f=structure`; null shows
+  /// the facets.
+  setInside(solids) {
+    this.inside = solids;
+    this.#showInside();
+    this.stage.draw();
+  }
+
+  #showInside() {
+    for (const group of this.insideGroups ?? []) this.stage.scene.remove(group);
+    const lod = this.lod ?? this.lods[0];
+    this.insideGroups = (this.inside ?? [])
+                            .filter((solid) => (solid.lod ?? '') === lod)
+                            .map((solid) => tetrahedraOf(solid, (at) => this.model.place(at)));
+    for (const group of this.insideGroups) this.stage.scene.add(group);
+    this.model.mesh.visible = !this.inside;
   }
 
   #cut() {

@@ -86,13 +86,15 @@ Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
       if (is_cancelled && is_cancelled()) {
         return Error{ErrorCode::cancelled, "the export was not finished"};
       }
-      if (scope_ == ExportScope::proven && !feature.is_proven()) continue;
+      if (scope_ != ExportScope::all && feature.is_proven() != (scope_ == ExportScope::proven)) {
+        continue;
+      }
       if (Status status = add(std::move(feature), bytes); !status) return status.error();
     }
     after_ = std::move(batch->next);
     is_last_ = after_.empty();
     const bool is_part = plan_ && plan_->sequences().size() > 1;
-    if (is_last_ && exported_.features == 0 && !is_part) {
+    if (is_last_ && exported_.features == 0 && !is_part && scope_ != ExportScope::unproven) {
       return Error{ErrorCode::not_found, "collection '" + collection_ + "' has no proven features"};
     }
     if (!is_last_ || !container_) continue;

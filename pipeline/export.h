@@ -25,8 +25,9 @@ enum class ExportFormat : std::uint8_t {
   sequence    // a CityJSONSeq; for features that can share one header
 };
 
-/// The features of an export: all, or those that are proven (FeatureRecord::is_proven()).
-enum class ExportScope : std::uint8_t { all, proven };
+/// The features of an export: all, those that are proven (FeatureRecord::is_proven()), or the
+/// others.
+enum class ExportScope : std::uint8_t { all, proven, unproven };
 
 struct Exported {
   std::uint64_t features = 0;
@@ -38,8 +39,8 @@ struct Exported {
 class CollectionExport {
  public:
   /// Starts an export, of the features for which all conditions hold. Errors: those of the store;
-  /// not_found (no collection, no features); those of
-  /// SequencePlan::make(); unsupported when the features need several sequences.
+  /// not_found (no collection, no features; but an export of what is not proven may be empty);
+  /// those of SequencePlan::make(); unsupported when the features need several sequences.
   static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
                                         ExportFormat format, const ContainerOptions& options = {},
                                         ExportScope scope = ExportScope::all,

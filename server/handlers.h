@@ -60,6 +60,9 @@ inline constexpr std::string_view kItemParameters[] = {
 inline constexpr std::string_view kValidateParameters[] = {
     "f",       "surfaces",       "planarity", "planarity-angle",
     "overlap", "exact-overlaps", "proof",     "strict"};
+inline constexpr std::string_view kReportParameters[] = {
+    "f",       "proven",         "surfaces", "planarity", "planarity-angle",
+    "overlap", "exact-overlaps", "proof",    "strict"};
 inline constexpr std::string_view kSubmitParameters[] = {
     "f",       "invalid",        "surfaces", "planarity", "planarity-angle",
     "overlap", "exact-overlaps", "proof",    "strict"};
@@ -90,6 +93,7 @@ Response put_attributes(const RoutedRequest& request);
 Response get_tileset(const RoutedRequest& request);
 Response get_tile(const RoutedRequest& request);
 Response get_export(const RoutedRequest& request);
+Response get_report(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
 Response post_convert(const RoutedRequest& request);
 Response post_encode(const RoutedRequest& request);

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Handlers that validate: POST items (and store), POST /validate.
-#include <array>
 #include <memory>
 #include <optional>
 
 #include "pipeline/outcome_json.h"
 #include "pipeline/stored/collection_header.h"
 #include "pipeline/streaming/ingestion.h"
-#include "pipeline/validate_stream.h"
-#include "report/feature_report.h"
+#include "server/documents/report_answer.h"
 #include "server/documents/rules.h"
 #include "server/documents/submission.h"
 #include "server/handlers.h"
@@ -19,74 +17,11 @@
 namespace watertight::server {
 namespace {
 
-std::unique_ptr<report::FeatureReport> make_report(std::size_t kind, report::TextSink sink,
-                                                   report::ReportHead head) {
-  if (kind == 1) return report::geojson_report(std::move(sink), std::move(head));
-  if (kind == 2) return report::html_report(std::move(sink), std::move(head));
-  return report::json_report(std::move(sink), std::move(head));
-}
-
-/// Counts the judged solids of a feature and the findings between them.
-void count(Metrics* metrics, const pipeline::InspectedFeature& feature) {
-  if (metrics == nullptr) return;
-  for (std::size_t i = 0; i < feature.own; ++i) metrics->count(feature.solids[i].inspection.report);
-  for (const pipeline::InspectedGroup& group : feature.groups)
-    metrics->count(group.report.findings);
-}
-
 void count(Metrics* metrics, const pipeline::FeatureOutcome& feature) {
   if (metrics == nullptr) return;
   for (const pipeline::SolidOutcome& solid : feature.solids) metrics->count(solid.report);
   for (const pipeline::InspectedGroup& group : feature.groups)
     metrics->count(group.report.findings);
-}
-
-/// Validates a document and answers with its report; `kind` is 0 for JSON, 1 for GeoJSON, 2 for
-/// HTML; `surfaces` is the rule for surfaces, "" for the default. Equal documents get equal
-/// answers, so the report has no times.
-Response report_of(formats::FeatureReader& reader, const RoutedRequest& request,
-                   const pipeline::IngestOptions& options, std::size_t kind,
-                   const std::string& surfaces) {
-  constexpr std::array<std::string_view, 3> kTypes{kJson, kGeoJson, "text/html; charset=utf-8"};
-  Response response{200, std::string(kTypes[kind]), {}, {}};
-  report::ReportHead head;
-  head.program_version = WATERTIGHT_VERSION;
-  head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
-  head.overlap_metres = options.groups.overlap_metres;
-  head.is_strict = options.certify.ladder.strict;
-  head.surfaces = surfaces;
-  const std::size_t longest = request.service.options.longest_report;
-  const auto report = make_report(
-      kind,
-      [&response, longest](std::string_view text) -> Status {
-        if (response.body.size() + text.size() > longest) {
-          return Error{ErrorCode::limit_exceeded,
-                       "the report is longer than " + std::to_string(longest) +
-                           " bytes; validate the document in parts, or with the command line"};
-        }
-        response.body += text;
-        return Done{};
-      },
-      std::move(head));
-  pipeline::StreamOptions stream;
-  stream.certify = options.certify;
-  stream.groups = options.groups;
-  stream.groups.limits = options.certify.limits;
-  stream.groups.cancel = options.certify.ladder.cancel;
-  stream.threads = options.threads;
-  stream.is_cancelled = options.is_cancelled;
-  Status status = report->begin_document({"request body", reader.document().format});
-  const auto outcome = pipeline::validate_stream(
-      reader, request.service.workers, stream,
-      [&](pipeline::ValidatedFeature&& feature) {
-        count(request.service.metrics, feature.inspected);
-        return report->add(feature);
-      },
-      [](const Error& error) -> Status { return error; });
-  if (!outcome) return to_response(problem_of_body(outcome.error()));
-  if (status) status = report->end_document({reader.document().notes, 0});
-  if (status) status = report->finish();
-  return status ? std::move(response) : to_response(to_problem(status.error()));
 }
 
 /// The header of the collection if the body is a bare feature, which needs one; else "". Errors:
@@ -170,20 +105,17 @@ Response post_validate(const RoutedRequest& request) {
   pipeline::IngestOptions options = ingest_options(request);
   const Status status = read_rules(request.target, options);
   if (!status) return to_response(to_problem(status.error()));
-  const auto kind = negotiate(request.request.header("accept"), {kJson, kGeoJson, kHtml});
-  if (!kind) {
-    return refuse(
-        406, "not-acceptable",
-        "the report is available as application/json, application/geo+json and text/html");
-  }
-  const std::string* named = request.target.parameter("surfaces");
-  const auto surfaces = pipeline::surface_rule_named(named == nullptr ? "check" : *named);
+  const auto kind = report_kind(request.request.header("accept"));
+  if (!kind) return refuse_report_kinds();
+  const auto surfaces = judged_surfaces(request.target);
   if (!surfaces) return to_response(to_problem(surfaces.error()));
   options.certify.severity_of_surfaces = surfaces->severity;
   Submission submission = read_submission(request, AcceptedFormats::all, "", surfaces->reading);
   if (submission.problem) return to_response(*submission.problem);
-  const bool is_default = named == nullptr || *named == "check";
-  return report_of(*submission.reader, request, options, *kind, is_default ? "" : *named);
+  ReportAnswer answer(request.service, *kind, options, surfaces->name);
+  const Status judged = answer.judge(*submission.reader, "request body");
+  if (!judged) return to_response(problem_of_body(judged.error()));
+  return std::move(answer).finish();
 }
 
 }  // namespace watertight::server

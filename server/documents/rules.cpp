@@ -77,6 +77,14 @@ Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
   return Done{};
 }
 
+Result<JudgedSurfaces> judged_surfaces(const Target& target) {
+  const std::string* named = target.parameter("surfaces");
+  const std::string name = named == nullptr ? "check" : *named;
+  const auto rule = pipeline::surface_rule_named(name);
+  if (!rule) return rule.error();
+  return JudgedSurfaces{*rule, name == "check" ? std::string() : name};
+}
+
 Response refused_document(const pipeline::IngestOutcome& outcome, std::string_view consequence) {
   Problem problem;
   problem.status = 422;

@@ -22,6 +22,13 @@ Status read_rules(const Target& target, pipeline::IngestOptions& ingest);
 /// invalid_argument.
 Result<formats::Surfaces> stored_surfaces(const Target& target);
 
+/// The rule for surfaces that are judged; its name is "" for the default.
+struct JudgedSurfaces : pipeline::SurfaceRule {
+  std::string name;
+};
+/// Errors: invalid_argument.
+Result<JudgedSurfaces> judged_surfaces(const Target& target);
+
 /// The answer 422 to a document that is not valid, or undecided; the report in it says why, and
 /// `consequence` what did not happen ("nothing was stored").
 Response refused_document(const pipeline::IngestOutcome& outcome, std::string_view consequence);

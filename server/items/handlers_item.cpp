@@ -8,7 +8,7 @@
 
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
-#include "pipeline/stored/structure.h"
+#include "pipeline/structure.h"
 #include "server/features/feature_text.h"
 #include "server/features/pages.h"
 #include "server/handlers.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/stored/structure.h"
+#include "pipeline/structure.h"
 
 #include <algorithm>
 

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/documents/report_answer.h"
+
+#include <array>
+
+#include "pipeline/validate_stream.h"
+#include "server/metrics/metrics.h"
+
+namespace watertight::server {
+namespace {
+
+struct KindName {
+  std::string_view parameter;  // value of f=
+  std::string_view type;
+};
+
+constexpr std::array<KindName, 5> kKinds{{{"json", kJson},
+                                          {"geojson", kGeoJson},
+                                          {"html", kHtml},
+                                          {"csv", "text/csv"},
+                                          {"sarif", "application/sarif+json"}}};
+
+std::unique_ptr<report::FeatureReport> make_report(ReportKind kind, report::TextSink sink,
+                                                   report::ReportHead head) {
+  switch (kind) {
+    case ReportKind::geojson:
+      return report::geojson_report(std::move(sink), std::move(head));
+    case ReportKind::html:
+      return report::html_report(std::move(sink), std::move(head));
+    case ReportKind::csv:
+      return report::csv_report(std::move(sink));
+    case ReportKind::sarif:
+      return report::sarif_report(std::move(sink), std::move(head));
+    case ReportKind::json:
+      break;
+  }
+  return report::json_report(std::move(sink), std::move(head));
+}
+
+/// Counts the judged solids of a feature and the findings between them.
+void count(Metrics* metrics, const pipeline::InspectedFeature& feature) {
+  if (metrics == nullptr) return;
+  for (std::size_t i = 0; i < feature.own; ++i) metrics->count(feature.solids[i].inspection.report);
+  for (const pipeline::InspectedGroup& group : feature.groups) {
+    metrics->count(group.report.findings);
+  }
+}
+
+std::string type_of(ReportKind kind) {
+  std::string type(kKinds[static_cast<std::size_t>(kind)].type);
+  return type.starts_with("text/") ? type.append("; charset=utf-8") : type;
+}
+
+}  // namespace
+
+std::optional<ReportKind> report_kind(const std::string* accept) {
+  std::vector<std::string_view> offers;
+  for (const KindName& kind : kKinds) offers.push_back(kind.type);
+  const auto chosen = negotiate(accept, offers);
+  return chosen ? std::optional(static_cast<ReportKind>(*chosen)) : std::nullopt;
+}
+
+std::optional<ReportKind> report_kind_named(std::string_view name) {
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    if (kKinds[i].parameter == name) return static_cast<ReportKind>(i);
+  }
+  return std::nullopt;
+}
+
+std::string_view name_of(ReportKind kind) {
+  return kKinds[static_cast<std::size_t>(kind)].parameter;
+}
+
+Response refuse_report_kinds() {
+  return refuse(406, "not-acceptable",
+                "the report is available as application/json, application/geo+json, text/html, "
+                "text/csv and application/sarif+json");
+}
+
+ReportAnswer::ReportAnswer(const Service& service, ReportKind kind,
+                           const pipeline::IngestOptions& options, const std::string& surfaces)
+    : service_(service), options_(options), response_{200, type_of(kind), {}, {}} {
+  report::ReportHead head;
+  head.program_version = WATERTIGHT_VERSION;
+  head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
+  head.overlap_metres = options.groups.overlap_metres;
+  head.is_strict = options.certify.ladder.strict;
+  head.surfaces = surfaces;
+  report_ = make_report(
+      kind,
+      [this, longest = service.options.longest_report](std::string_view text) -> Status {
+        if (response_.body.size() + text.size() > longest) {
+          return Error{ErrorCode::limit_exceeded,
+                       "the report is longer than " + std::to_string(longest) +
+                           " bytes; validate the document in parts, or with the command line"};
+        }
+        response_.body += text;
+        return Done{};
+      },
+      std::move(head));
+}
+
+Status ReportAnswer::judge(formats::FeatureReader& reader, const std::string& file) {
+  pipeline::StreamOptions stream;
+  stream.certify = options_.certify;
+  stream.groups = options_.groups;
+  stream.groups.limits = options_.certify.limits;
+  stream.groups.cancel = options_.certify.ladder.cancel;
+  stream.threads = options_.threads;
+  stream.is_cancelled = options_.is_cancelled;
+  Status status = report_->begin_document({file, reader.document().format});
+  if (!status) return status;
+  const auto outcome = pipeline::validate_stream(
+      reader, service_.workers, stream,
+      [&](pipeline::ValidatedFeature&& feature) {
+        count(service_.metrics, feature.inspected);
+        return report_->add(feature);
+      },
+      [](const Error& error) -> Status { return error; });
+  if (!outcome) return outcome.error();
+  return report_->end_document({reader.document().notes, 0});
+}
+
+Response ReportAnswer::finish() && {
+  const Status status = report_->finish();
+  return status ? std::move(response_) : to_response(to_problem(status.error()));
+}
+
+}  // namespace watertight::server

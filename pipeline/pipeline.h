@@ -257,8 +257,8 @@ struct EncodeOutcome {
 Result<EncodeOutcome> encode_document(Document document, delaunay::EngineWorkers* workers,
                                       const IngestOptions& options);
 
-/// Validates, encodes and stores a document that is in memory (pipeline/streaming/ingestion.h).
-/// Errors: those of Ingestion.
+/// Validates, encodes and stores a document that is in memory
+/// (pipeline/streaming/ingestion.h). Errors: those of Ingestion.
 Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
                              const IngestOptions& options);
 

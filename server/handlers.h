@@ -44,8 +44,8 @@ using Handler = Response (*)(const RoutedRequest&);
 struct Route {
   std::string_view method;
   std::string_view path;  // "/collections/{collectionId}": as in the OpenAPI document
-  Lane lane;    // POST requests of the computing lane with at most kSmallBody bytes, which are not
-                // compressed, go to the small one
+  Lane lane;    // requests of the computing lane whose bodies have at most kSmallBody bytes and are
+                // not compressed, go to the small one
   Scope scope;  // of the key that a request needs, where keys are needed
   Handler handler;
   std::vector<std::string_view> parameters;  // the query parameters that the route knows
@@ -86,6 +86,8 @@ Response delete_collection(const RoutedRequest& request);
 Response get_items(const RoutedRequest& request);
 Response get_item(const RoutedRequest& request);
 Response post_items(const RoutedRequest& request);
+Response put_item(const RoutedRequest& request);
+Response patch_item(const RoutedRequest& request);
 Response delete_item(const RoutedRequest& request);
 Response get_queryables(const RoutedRequest& request);
 Response get_attributes(const RoutedRequest& request);

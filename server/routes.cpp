@@ -188,6 +188,13 @@ const std::vector<Route>& item_routes() {
        read,
        get_item,
        {"f", "solid", "crs", "lod"}},
+      {"PUT",
+       "/collections/{collectionId}/items/{itemId}",
+       computing,
+       write,
+       put_item,
+       {std::begin(kSubmitParameters), std::end(kSubmitParameters)}},
+      {"PATCH", "/collections/{collectionId}/items/{itemId}", computing, write, patch_item, {}},
       {"DELETE", "/collections/{collectionId}/items/{itemId}", small, write, delete_item, {}},
   };
   return table;
@@ -214,7 +221,8 @@ Lane lane_of(const Request& request, std::uint64_t body_bytes) {
   const Route* route = route_of(request);
   if (route == nullptr) return Lane::quick;
   // A Watertight file is compressed: its size says little about the work in it.
-  const bool is_small = request.method == "POST" && body_bytes <= kSmallBody &&
+  // POST, PUT and PATCH have bodies.
+  const bool is_small = request.method.starts_with('P') && body_bytes <= kSmallBody &&
                         !pipeline::is_container(as_bytes(request.body));
   return route->lane == Lane::computing && is_small ? Lane::small : route->lane;
 }

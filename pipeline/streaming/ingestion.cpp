@@ -207,19 +207,24 @@ IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts,
   return all;
 }
 
-Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
-                             const IngestOptions& options) {
+Result<IngestOutcome> ingest(formats::FeatureReader& reader, SolidStore& store,
+                             delaunay::EngineWorkers* workers, const IngestOptions& options) {
   OutcomeKeeper keeper(std::numeric_limits<std::size_t>::max(),
                        std::numeric_limits<std::uint64_t>::max());
   Ingestion ingestion(store, workers, options, [&](FeatureOutcome&& outcome) -> Status {
     keeper.add(std::move(outcome));
     return Done{};
   });
-  auto reader = formats::FeatureReader::of(std::move(document));
   if (Status added = ingestion.add(reader); !added) return std::move(added).error();
   const auto counts = ingestion.finish();
   if (!counts) return counts.error();
   return std::move(keeper).outcome(*counts, ingestion.versions());
+}
+
+Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,
+                             const IngestOptions& options) {
+  auto reader = formats::FeatureReader::of(std::move(document));
+  return ingest(reader, store, workers, options);
 }
 
 }  // namespace watertight::pipeline

@@ -107,4 +107,9 @@ class OutcomeKeeper {
   std::vector<Kept> kept_;
 };
 
+/// Validates, encodes and stores the features of a reader; the outcome has all of them. Errors:
+/// those of Ingestion.
+Result<IngestOutcome> ingest(formats::FeatureReader& reader, SolidStore& store,
+                             delaunay::EngineWorkers* workers, const IngestOptions& options);
+
 }  // namespace watertight::pipeline

@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "pipeline/outcome_json.h"
-#include "pipeline/stored/collection_header.h"
 #include "pipeline/streaming/ingestion.h"
 #include "server/documents/report_answer.h"
 #include "server/documents/rules.h"
 #include "server/documents/submission.h"
+#include "server/features/links.h"
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
 #include "server/metrics/metrics.h"
@@ -24,26 +24,20 @@ void count(Metrics* metrics, const pipeline::FeatureOutcome& feature) {
     metrics->count(group.report.findings);
 }
 
-/// The header of the collection if the body is a bare feature, which needs one; else "". Errors:
-/// conflict when its features have several headers, as the feature would be read wrongly.
-Result<std::string> header_for(const RoutedRequest& request) {
-  if (!is_bare_feature(request)) return std::string();
-  return pipeline::collection_header(*request.service.store, request.target.segments[1]);
-}
-
 /// The most features of which the answer has the outcomes, valid or not.
 constexpr std::size_t kMostOutcomes = 1000;
 /// The most bytes of their reports; a feature with longer ones is in the answer if it is the only.
 constexpr std::uint64_t kMostOutcomeBytes = 64ULL << 20U;
 
-Response answer_of(const pipeline::IngestOutcome& outcome, const std::string& collection) {
+Response answer_of(const RoutedRequest& request, const pipeline::IngestOutcome& outcome) {
   // With invalid=skip some features may be stored; the report says which.
   Response response{outcome.stored > 0 ? 201U : 200U,
                     std::string(kJson),
                     pipeline::outcome_json(outcome) + "\n",
                     {}};
   if (outcome.total == 1 && outcome.stored == 1) {
-    response.headers.push_back({"Location", item_path(collection, outcome.features.front().id)});
+    const std::string path = item_path(request.target.segments[1], outcome.features.front().id);
+    response.headers.push_back({"Location", base_url(request) + path});
   }
   return response;
 }
@@ -70,35 +64,22 @@ std::optional<Problem> read_into(pipeline::Ingestion& ingestion, const RoutedReq
 
 Response post_items(const RoutedRequest& request) {
   if (auto refusal = unless_conditional(request)) return *std::move(refusal);
-  pipeline::IngestOptions options = ingest_options(request);
-  options.collection = request.target.segments[1];
-  if (const std::string* named = request.target.parameter("invalid")) {
-    const auto invalid = pipeline::policy_named(*named);
-    if (!invalid) return to_response(to_problem(invalid.error()));
-    options.policy = *invalid;
-  }
-  if (Status rules = read_rules(request.target, options); !rules) {
-    return to_response(to_problem(rules.error()));
-  }
-  const auto surfaces = stored_surfaces(request.target);
-  if (!surfaces) return to_response(to_problem(surfaces.error()));
-  options.surfaces = *surfaces;
-  auto condition = write_condition(request.request);
-  if (!condition) return to_response(to_problem(condition.error()));
-  options.condition = *std::move(condition);
+  const auto options = submit_options(request);
+  if (!options) return to_response(to_problem(options.error()));
   pipeline::OutcomeKeeper keeper(kMostOutcomes, kMostOutcomeBytes);
-  pipeline::Ingestion ingestion(*request.service.store, request.service.workers, options,
+  pipeline::Ingestion ingestion(*request.service.store, request.service.workers, *options,
                                 [&](pipeline::FeatureOutcome&& feature) -> Status {
                                   count(request.service.metrics, feature);
                                   keeper.add(std::move(feature));
                                   return Done{};
                                 });
-  if (const auto problem = read_into(ingestion, request, *surfaces)) return to_response(*problem);
+  if (const auto problem = read_into(ingestion, request, options->surfaces))
+    return to_response(*problem);
   const auto counts = ingestion.finish();
   if (!counts) return to_response(to_problem(counts.error()));
   const auto outcome = std::move(keeper).outcome(*counts, ingestion.versions());
   return ingestion.is_refused() ? refused_document(outcome, "nothing was stored")
-                                : answer_of(outcome, options.collection);
+                                : answer_of(request, outcome);
 }
 
 Response post_validate(const RoutedRequest& request) {

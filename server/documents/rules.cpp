@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "pipeline/outcome_json.h"
+#include "server/items/preconditions.h"
 
 namespace watertight::server {
 namespace {
@@ -75,6 +76,24 @@ Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
   }
   options.proof = Proof::boundary;
   return Done{};
+}
+
+Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request) {
+  pipeline::IngestOptions options = ingest_options(request);
+  options.collection = request.target.segments[1];
+  if (const std::string* named = request.target.parameter("invalid")) {
+    const auto invalid = pipeline::policy_named(*named);
+    if (!invalid) return invalid.error();
+    options.policy = *invalid;
+  }
+  if (Status rules = read_rules(request.target, options); !rules) return std::move(rules).error();
+  const auto surfaces = stored_surfaces(request.target);
+  if (!surfaces) return surfaces.error();
+  options.surfaces = *surfaces;
+  auto condition = write_condition(request.request);
+  if (!condition) return std::move(condition).error();
+  options.condition = *std::move(condition);
+  return options;
 }
 
 Result<JudgedSurfaces> judged_surfaces(const Target& target) {

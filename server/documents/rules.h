@@ -14,6 +14,10 @@ namespace watertight::server {
 /// The limits, threads and cancel of a request.
 pipeline::IngestOptions ingest_options(const RoutedRequest& request);
 
+/// The options of a request that stores features: collection, policy, rules, surfaces, condition.
+/// Errors: invalid_argument.
+Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request);
+
 /// Reads the rules by which solids are judged: planarity, planarity-angle, overlap, exact-overlaps,
 /// proof, strict. Errors: invalid_argument.
 Status read_rules(const Target& target, pipeline::IngestOptions& ingest);

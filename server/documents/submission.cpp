@@ -7,6 +7,7 @@
 
 #include "formats/city_json/city_json.h"
 #include "pipeline/container.h"
+#include "pipeline/stored/collection_header.h"
 
 namespace watertight::server {
 namespace {
@@ -306,6 +307,11 @@ Conversion read_conversion(const RoutedRequest& request, std::optional<Format> t
     conversion.problem = problem_of_body(document.error());
   }
   return conversion;
+}
+
+Result<std::string> header_for(const RoutedRequest& request) {
+  if (!is_bare_feature(request)) return std::string();
+  return pipeline::collection_header(*request.service.store, request.target.segments[1]);
 }
 
 }  // namespace watertight::server

@@ -51,6 +51,10 @@ std::string_view media_type_of(Format format);
 /// The memory for a body that is a Watertight file, which has no reader; or the problem: 413, 503.
 Submission container_submission(const RoutedRequest& request);
 
+/// The header of the collection if the body is a bare feature, which needs one; else "". Errors:
+/// conflict when its features have several headers, as the feature would be read wrongly.
+Result<std::string> header_for(const RoutedRequest& request);
+
 /// The problem with a body that could not be read.
 Problem problem_of_body(const Error& error);
 

@@ -3,9 +3,8 @@
 
 #include <zlib.h>
 
-#include <algorithm>
 #include <climits>
-#include <new>
+#include <memory>
 
 namespace watertight::archives {
 namespace {
@@ -15,45 +14,35 @@ constexpr int kWindow = 15 + 16;  // 32 KiB; 16 means a gzip header
 constexpr int kMemory = 8;        // zlib's default
 constexpr std::size_t kStep = std::size_t{1} << 16U;
 
-/// zlib's state; it has no way to fail but for want of memory.
-class Deflater {
- public:
-  explicit Deflater(int level) {
-    if (deflateInit2(&stream_, level, Z_DEFLATED, kWindow, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) {
-      throw std::bad_alloc();
-    }
-  }
-  Deflater(const Deflater&) = delete;
-  Deflater& operator=(const Deflater&) = delete;
-  ~Deflater() { deflateEnd(&stream_); }
-
-  void add(std::string_view text, bool is_last, std::string& out) {
-    // zlib reads from next_in only.
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-    stream_.avail_in = static_cast<uInt>(text.size());
-    do {
-      const std::size_t before = out.size();
-      out.resize(before + kStep);
-      stream_.next_out = reinterpret_cast<Bytef*>(out.data() + before);
-      stream_.avail_out = kStep;
-      deflate(&stream_, is_last ? Z_FINISH : Z_NO_FLUSH);
-      out.resize(out.size() - stream_.avail_out);
-    } while (stream_.avail_out == 0);
-  }
-
- private:
-  z_stream stream_{};
-};
+/// Compresses a part of a text of at most INT_MAX bytes.
+void add(z_stream& stream, std::string_view part, bool is_last, std::string& out) {
+  // zlib reads from next_in only.
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(part.data()));
+  stream.avail_in = static_cast<uInt>(part.size());
+  do {
+    const std::size_t before = out.size();
+    out.resize(before + kStep);
+    stream.next_out = reinterpret_cast<Bytef*>(out.data() + before);
+    stream.avail_out = kStep;
+    deflate(&stream, is_last ? Z_FINISH : Z_NO_FLUSH);
+    out.resize(out.size() - stream.avail_out);
+  } while (stream.avail_out == 0);
+}
 
 }  // namespace
 
-std::string gzip(std::string_view text, Effort effort) {
-  Deflater deflater(effort == Effort::best ? Z_BEST_COMPRESSION : kFast);
+Result<std::string> gzip(std::string_view text, Effort effort) {
+  z_stream stream{};
+  const int level = effort == Effort::best ? Z_BEST_COMPRESSION : kFast;
+  if (deflateInit2(&stream, level, Z_DEFLATED, kWindow, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) {
+    return Error{ErrorCode::unavailable, "there is no memory to compress"};
+  }
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, deflateEnd);
   std::string out;
   do {
     const std::string_view part = text.substr(0, INT_MAX);
     text.remove_prefix(part.size());
-    deflater.add(part, text.empty(), out);
+    add(stream, part, text.empty(), out);
   } while (!text.empty());
   return out;
 }

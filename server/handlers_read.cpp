@@ -86,8 +86,8 @@ Response get_validate(const RoutedRequest& request) {
 
 Response get_web_file(const RoutedRequest& request) {
   // Compressed once, when the first is asked for: all are asked for together.
-  static const std::vector<std::string> packed = [] {
-    std::vector<std::string> all;
+  static const std::vector<Result<std::string>> packed = [] {
+    std::vector<Result<std::string>> all;
     for (const web::WebFile& file : web::files()) {
       all.push_back(archives::gzip(file.text, archives::Effort::best));
     }
@@ -102,8 +102,8 @@ Response get_web_file(const RoutedRequest& request) {
                       std::string(file.type),
                       std::string(file.text),
                       {{"ETag", etag}, {"Cache-Control", "no-cache"}, {"Vary", "Accept-Encoding"}}};
-    if (takes_gzip(request.request)) {
-      response.body = packed[i];
+    if (packed[i] && takes_gzip(request.request)) {
+      response.body = *packed[i];
       response.headers.front().value.insert(etag.size() - 1, kGzipTag);
       response.headers.push_back({"Content-Encoding", "gzip"});
     }

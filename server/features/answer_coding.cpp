@@ -29,7 +29,9 @@ double quality_of(std::string_view parameters) {
 }
 
 Response compressed(Response response) {
-  response.body = archives::gzip(response.body, archives::Effort::fast);
+  auto packed = archives::gzip(response.body, archives::Effort::fast);
+  if (!packed) return response;
+  response.body = *std::move(packed);
   response.headers.push_back({"Content-Encoding", "gzip"});
   for (HeaderField& field : response.headers) {
     if (field.name == "ETag" && field.value.ends_with('"')) {

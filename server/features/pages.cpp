@@ -287,6 +287,7 @@ std::string item_page(const std::string& collection, const Json& feature) {
       {"?f=geojson", "GeoJSON"},
       {"?f=jsonfg", "JSON-FG"},
       {"?f=obj", "OBJ"},
+      {"?f=wkt", "WKT"},
       {"?f=glb", "binary glTF"},
       {"?f=wt", "Watertight file"},
       {"?f=proof", "Proof, measures and findings (JSON)"},

@@ -25,13 +25,15 @@ struct ItemFormat {
   std::string_view type;
 };
 
-constexpr std::array<ItemFormat, 12> kFormats{{{"cityjson", kCityJson},
+constexpr std::array<ItemFormat, 14> kFormats{{{"cityjson", kCityJson},
                                                {"jsonfg", kJsonFg},
                                                {"html", kHtml},
                                                {"geojson", kGeoJson},
                                                {"json", kJson},
                                                {"cityjsonseq", kCityJsonSeq},
                                                {"obj", kObj},
+                                               {"wkt", "text/wkt"},
+                                               {"ewkb", "application/ewkb"},
                                                {"glb", kGltf},
                                                {"wt", kContainer},
                                                {"blob", kBlob},
@@ -156,6 +158,8 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item,
   }
   Format target = Format::city_json;
   if (format == "obj") target = Format::obj;
+  if (format == "wkt") target = Format::wkt;
+  if (format == "ewkb") target = Format::ewkb;
   if (format == "cityjsonseq") target = Format::city_json_seq;
   return pipeline::convert_document(*document, target);
 }
@@ -218,7 +222,8 @@ Response get_item(const RoutedRequest& request) {
         "an item is available as application/city+json (f=cityjson), application/json (f=json), "
         "application/geo+json (f=geojson), application/vnd.ogc.fg+json (f=jsonfg), text/html "
         "(f=html), "
-        "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), model/gltf-binary (f=glb), "
+        "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), text/wkt (f=wkt), "
+        "application/ewkb (f=ewkb), model/gltf-binary (f=glb), "
         "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs "
         "and findings with f=proof, the tetrahedra in its solids with f=structure");
   }

@@ -102,6 +102,12 @@ TEST_CASE_METHOD(Fixture, "a posted document is stored and comes back in each fo
   const std::size_t line = sequence.body.find('\n');
   CHECK(Json::parse(sequence.body.substr(line + 1)) == Json::parse(samples::feature("a")));
   CHECK(get("/collections/town/items/a", {{"accept", "model/obj"}}).content_type == "model/obj");
+  CHECK(
+      get("/collections/town/items/a", {{"accept", "text/wkt"}}).body.find("POLYHEDRALSURFACE Z") !=
+      std::string::npos);
+  const server::Response binary = get("/collections/town/items/a?f=ewkb");
+  CHECK(binary.content_type == "application/ewkb");
+  CHECK(Json::parse(post("/validate?f=ewkb", binary.body, "").body)["verdict"] == "valid");
   CHECK(get("/collections/town/items/a?f=blob").content_type == "application/vnd.watertight.blob");
   CHECK(get("/collections/town/items/a?f=wt").content_type == "application/vnd.watertight");
   problem_of(get("/collections/town/items/a", {{"accept", "image/png"}}));

@@ -136,7 +136,17 @@ Result<std::string> merge_patch(std::string_view target, std::string_view patch)
   if (!is_object(target) || !is_object(patch)) {
     return Error{ErrorCode::malformed, "a merge patch is a JSON object, and changes one"};
   }
-  return merged(target, Json::parse(patch));
+  bool is_deep = false;
+  const auto limit = [&is_deep](int depth, Json::parse_event_t, Json&) {
+    is_deep = is_deep || depth > kDeepestPatch;
+    return !is_deep;
+  };
+  const Json change = Json::parse(patch, limit);
+  if (is_deep) {
+    return Error{ErrorCode::limit_exceeded,
+                 "the patch is nested deeper than " + std::to_string(kDeepestPatch) + " levels"};
+  }
+  return merged(target, change);
 }
 
 Result<std::string> patch_attributes(std::string_view feature, const std::string& object,

@@ -10,10 +10,14 @@
 
 namespace watertight::formats {
 
+/// The deepest nesting of a patch, as of documents.
+constexpr int kDeepestPatch = 64;
+
 /// The JSON object `target` after a merge patch (RFC 7396), which is a JSON object too: members
 /// that are null are removed, objects are merged, other values replace those of the same name or
-/// are added at the end. Errors: malformed if one of the texts is no JSON object. Cost: linear in
-/// both for each level of objects in the patch.
+/// are added at the end. Errors: malformed if one of the texts is no JSON object; limit_exceeded
+/// for a patch that is nested deeper than kDeepestPatch. Cost: linear in both for each level of
+/// objects in the patch.
 Result<std::string> merge_patch(std::string_view target, std::string_view patch);
 
 /// The text of a feature (a skeleton or a CityJSONFeature) in which the attributes of one city

@@ -61,8 +61,12 @@ Result<std::string> patched_attributes(const std::string& body) {
     return Error{ErrorCode::limit_exceeded,
                  "a patch has at most " + std::to_string(kLongestPatch) + " bytes"};
   }
-  const Json patch = Json::parse(body, nullptr, false);
-  if (patch.is_discarded()) return Error{ErrorCode::malformed, "the patch is no JSON"};
+  if (!Json::accept(body)) return Error{ErrorCode::malformed, "the patch is no JSON"};
+  const auto is_shallow = formats::merge_patch("{}", body);
+  if (!is_shallow && is_shallow.error().code == ErrorCode::limit_exceeded) {
+    return is_shallow.error();
+  }
+  const Json patch = Json::parse(body);
   const Error wrong{ErrorCode::invalid_argument,
                     "a patch of a feature is {\"properties\": {\"NAME\": VALUE or null}}"};
   if (!patch.is_object() || !patch.contains("properties")) return wrong;

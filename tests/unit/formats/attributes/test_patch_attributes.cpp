@@ -2,6 +2,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "formats/attributes/patch_attributes.h"
 #include "tests/random.h"
@@ -54,6 +55,25 @@ TEST_CASE("a patch is an object, and so is what it changes") {
     INFO(wrong);
     CHECK_FALSE(merge_patch("{}", wrong));
     CHECK_FALSE(merge_patch(wrong, "{}"));
+  }
+}
+
+std::string nested(std::string_view open, std::string_view close, int levels) {
+  std::string text = "{\"a\":";
+  for (int i = 0; i < levels; ++i) text += open;
+  text += '1';
+  for (int i = 0; i < levels; ++i) text += close;
+  return text + "}";
+}
+
+TEST_CASE("a patch that is nested too deep is refused") {
+  for (const auto& [open, close] : {std::pair{"{\"b\":", "}"}, std::pair{"[", "]"}}) {
+    CHECK(merge_patch("{}", nested(open, close, 60)));
+    for (const int levels : {70, 200'000}) {
+      const auto refused = merge_patch("{}", nested(open, close, levels));
+      REQUIRE_FALSE(refused);
+      CHECK(refused.error().code == ErrorCode::limit_exceeded);
+    }
   }
 }
 

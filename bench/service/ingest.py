@@ -23,9 +23,14 @@ def sequence(program, document):
     """The lines of a document as a sequence."""
     if document.name.endswith(".jsonl"):
         return document.read_text().splitlines()
+    model = json.loads(document.read_text())
+    if "transform" not in model:  # a sequence needs one; millimetres are exact for what is measured here
+        model["transform"] = {"scale": [0.001] * 3, "translate": [0, 0, 0]}
+        model["vertices"] = [[round(1000 * value) for value in vertex] for vertex in model["vertices"]]
     with temporary_folder("convert") as folder:
-        made = folder / "document.city.jsonl"
-        subprocess.run([program, "convert", str(document), "-o", str(made)], check=True, capture_output=True)
+        whole, made = folder / "document.city.json", folder / "document.city.jsonl"
+        whole.write_text(json.dumps(model))
+        subprocess.run([program, "convert", str(whole), "-o", str(made)], check=True, capture_output=True)
         return made.read_text().splitlines()
 
 

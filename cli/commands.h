@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/files.h"
 #include "cli/rules.h"
 #include "cli/summary.h"
+#include "files/files.h"
 #include "pipeline/pipeline.h"
 #include "tiles/glb.h"
 
@@ -60,7 +60,7 @@ struct EncodeCommand {
 Exit run(const EncodeCommand& command);
 /// Encodes one document, `source`, which messages call `command.input`, to `command.output`.
 /// `position`: which document of how many, for the progress bar.
-Exit encode_input(const EncodeCommand& command, const InputFile& source,
+Exit encode_input(const EncodeCommand& command, const files::InputFile& source,
                   const std::string& position);
 
 /// A document that was validated and encoded; none if it was refused or could not be read, which
@@ -69,7 +69,7 @@ struct EncodedInput {
   Exit exit = Exit::valid;
   std::optional<pipeline::EncodedDocument> document;
 };
-EncodedInput encode_one(const EncodeCommand& command, const InputFile& source,
+EncodedInput encode_one(const EncodeCommand& command, const files::InputFile& source,
                         const std::string& position);
 
 struct AppendCommand {

@@ -7,9 +7,9 @@
 
 #include "base/quantity.h"
 #include "cli/commands.h"
-#include "cli/inputs.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
+#include "files/inputs.h"
 #include "pipeline/advise.h"
 #include "validate/finding_kinds.h"
 
@@ -58,7 +58,7 @@ void print(const pipeline::Advice& advice) {
 
 Exit run(const AdviseCommand& command) {
   const auto input = single_input(command.input);
-  auto opened = input ? open_input(*input, {}) : Result<OpenedInput>(input.error());
+  auto opened = input ? files::open_input(*input, {}) : Result<files::OpenedInput>(input.error());
   if (!opened) {
     complain(command.input, opened.error());
     return Exit::error;

@@ -12,8 +12,6 @@
 
 #include "base/quantity.h"
 #include "cli/commands.h"
-#include "cli/files.h"
-#include "cli/inputs.h"
 #include "cli/outputs/documents.h"
 #include "cli/remote/http_file.h"
 #include "cli/sources/input_list.h"
@@ -21,6 +19,8 @@
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
 #include "codec/explain.h"
+#include "files/files.h"
+#include "files/inputs.h"
 #include "pipeline/container.h"
 #include "pipeline/outcome_json.h"
 #include "validate/finding_kinds.h"
@@ -40,7 +40,7 @@ Exit fail_to_write(const std::string& file, const Error& error) {
 }
 
 bool replaces(const std::string& output, const std::string& input) {
-  return output != "-" && is_same_file(output, input);
+  return output != "-" && files::is_same_file(output, input);
 }
 
 Exit refuse_to_replace(const std::string& input, const std::string& output) {
@@ -66,16 +66,16 @@ void tell_rounded(const std::string& file, const pipeline::IngestOutcome& outcom
 }
 
 /// Reads the one document that an argument stands for.
-Result<WholeInput> read_argument(const std::string& argument) {
+Result<files::WholeInput> read_argument(const std::string& argument) {
   const auto input = single_input(argument);
   if (!input) return input.error();
-  return read_whole(*input, {});
+  return files::read_whole(*input, {});
 }
 
-Result<Input> load(const InputFile& file, const formats::ReadOptions& options) {
-  const auto whole = read_whole(file, options.limits);
+Result<files::Input> load(const files::InputFile& file, const formats::ReadOptions& options) {
+  const auto whole = files::read_whole(file, options.limits);
   if (!whole) return whole.error();
-  return load_input(whole->name, whole->bytes, options);
+  return files::load_input(whole->name, whole->bytes, options);
 }
 
 Mode mode_named(const std::string& name) {
@@ -112,7 +112,7 @@ Result<Bytes> pack(const EncodeCommand& command, const pipeline::EncodedDocument
 
 /// What an argument stands for: a Watertight file, or the bytes of something else.
 struct Encoded {
-  WholeInput whole;  // without bytes if it is on a web server
+  files::WholeInput whole;  // without bytes if it is on a web server
   std::optional<pipeline::ContainerFile> container;
 };
 
@@ -127,7 +127,7 @@ Status open_encoded(const std::string& argument, Encoded& encoded) {
   auto whole = read_argument(argument);
   if (!whole) return std::move(whole).error();
   encoded.whole = *std::move(whole);
-  if (kind_of_input(encoded.whole.bytes) != InputKind::container) return Done{};
+  if (files::kind_of_input(encoded.whole.bytes) != files::InputKind::container) return Done{};
   auto file = pipeline::ContainerFile::open(encoded.whole.bytes, {}, pipeline::TornTail::leave_out);
   if (!file) return std::move(file).error();
   warn_of_torn(argument, *file);
@@ -140,9 +140,9 @@ Result<std::vector<Document>> load_encoded(Encoded& encoded, std::size_t jobs) {
   if (encoded.container) {
     return pipeline::decode_container(*encoded.container, {}, static_cast<unsigned>(jobs));
   }
-  auto input = load_input(encoded.whole.name, encoded.whole.bytes, {});
+  auto input = files::load_input(encoded.whole.name, encoded.whole.bytes, {});
   if (!input) return std::move(input).error();
-  if (input->kind == InputKind::document) {
+  if (input->kind == files::InputKind::document) {
     return Error{ErrorCode::malformed, "neither a Watertight file nor a blob"};
   }
   std::vector<Document> documents;
@@ -271,7 +271,7 @@ Result<Json> info_of_container(pipeline::ContainerFile& file, bool lists_blocks)
 Result<Json> info_of(Encoded& encoded, bool lists_blocks) {
   if (encoded.container) return info_of_container(*encoded.container, lists_blocks);
   const Bytes& bytes = encoded.whole.bytes;
-  if (kind_of_input(bytes) == InputKind::page_file) return page_file_error();
+  if (files::kind_of_input(bytes) == files::InputKind::page_file) return files::page_file_error();
   const auto info = codec::describe(bytes);
   if (!info) return info.error();
   return json_of(*info);
@@ -368,10 +368,10 @@ Status write_rejected(const EncodeCommand& command, const std::string& header,
     return Error{ErrorCode::unsupported,
                  "what is left out is written for city models (CityJSON, CityJSONSeq) only"};
   }
-  const Status written = write_file(command.rejected, as_bytes(text));
+  const Status written = files::write_file(command.rejected, as_bytes(text));
   if (!written) return written;
   const std::string report = pipeline::outcome_json(outcome) + '\n';
-  return write_file(command.rejected + ".report.json", as_bytes(report));
+  return files::write_file(command.rejected + ".report.json", as_bytes(report));
 }
 
 std::string rejected_report(const EncodeCommand& command) {
@@ -389,7 +389,7 @@ Status check_rejected(const EncodeCommand& command, const std::string& input) {
   if (command.rejected == "-") return wrong("needs the name of a file");
   for (const std::string& file : {command.rejected, rejected_report(command)}) {
     if (replaces(file, input)) return wrong("'" + file + "' would replace the input");
-    if (file == command.output || is_same_file(file, command.output)) {
+    if (file == command.output || files::is_same_file(file, command.output)) {
       return wrong("'" + file + "' is the output");
     }
   }
@@ -398,7 +398,7 @@ Status check_rejected(const EncodeCommand& command, const std::string& input) {
 
 }  // namespace
 
-EncodedInput encode_one(const EncodeCommand& command, const InputFile& source,
+EncodedInput encode_one(const EncodeCommand& command, const files::InputFile& source,
                         const std::string& position) {
   const auto contract = formats::contract_named(command.contract);
   if (!contract) return {fail("--contract", contract.error()), {}};
@@ -448,7 +448,7 @@ EncodedInput encode_one(const EncodeCommand& command, const InputFile& source,
   return {exit, std::move(encoded->document)};
 }
 
-Exit encode_input(const EncodeCommand& command, const InputFile& source,
+Exit encode_input(const EncodeCommand& command, const files::InputFile& source,
                   const std::string& position) {
   if (replaces(command.output, source.file)) return refuse_to_replace(source.file, command.output);
   if (Status possible = check_rejected(command, source.file); !possible) {
@@ -458,7 +458,7 @@ Exit encode_input(const EncodeCommand& command, const InputFile& source,
   if (!encoded.document) return encoded.exit;
   const auto packed = pack(command, *encoded.document);
   if (!packed) return fail(command.input, packed.error());
-  const Status status = write_file(command.output, *packed);
+  const Status status = files::write_file(command.output, *packed);
   if (!status) return fail_to_write(command.output, status.error());
   if (!command.explains) return encoded.exit;
   const Status explained =
@@ -483,10 +483,11 @@ Exit run(const DecodeCommand& command) {
 }
 
 /// Whether a GML document is to become a city model, which keeps more of it than its solids.
-bool makes_city_of_gml(const ConvertCommand& command, const WholeInput& input) {
-  if (command.output == "-" || kind_of_input(input.bytes) != InputKind::document) return false;
+bool makes_city_of_gml(const ConvertCommand& command, const files::WholeInput& input) {
+  if (command.output == "-" || files::kind_of_input(input.bytes) != files::InputKind::document)
+    return false;
   const auto from = formats::detect_format(input.name, input.bytes);
-  const auto to = format_of_name(command.output);
+  const auto to = files::format_of_name(command.output);
   return from && *from == Format::gml && to &&
          (*to == Format::city_json || *to == Format::city_json_seq);
 }
@@ -530,7 +531,7 @@ Exit run(const ConvertCommand& command) {
     return save_converted(command, *std::move(city));
   }
   options.surfaces = surface_rule(command.surfaces).reading;
-  auto input = load_input(whole->name, whole->bytes, options);
+  auto input = files::load_input(whole->name, whole->bytes, options);
   if (!input) return fail(command.input, input.error());
   return save_converted(command, std::move(input->document));
 }

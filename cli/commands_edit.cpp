@@ -114,7 +114,7 @@ Result<std::uint64_t> add_all(EditedFile& file, std::vector<pipeline::EncodedDoc
 Exit run(const AppendCommand& command) {
   auto file = EditedFile::open(command.target);
   if (!file) return fail(command.target, file.error());
-  const std::vector<InputFile> inputs = list_inputs(command.encode.files);
+  const std::vector<files::InputFile> inputs = list_inputs(command.encode.files);
   std::vector<pipeline::EncodedDocument> documents;
   std::uint64_t features = 0;
   Exit exit = Exit::valid;

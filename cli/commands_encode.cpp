@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "cli/commands.h"
-#include "cli/files.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/progress.h"
+#include "files/files.h"
 
 namespace watertight::cli {
 namespace {
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 /// An input and the file that its encoding goes to.
 struct Planned {
-  const InputFile* input = nullptr;
+  const files::InputFile* input = nullptr;
   fs::path output;
 };
 
@@ -34,7 +34,7 @@ Error wrong(std::string reason) { return {ErrorCode::invalid_argument, std::move
 /// The outputs of several inputs in a folder: "FOLDER/town.zip/a.city.json.wt". Errors:
 /// invalid_argument.
 Result<std::vector<Planned>> plan(const EncodeCommand& command,
-                                  const std::vector<InputFile>& inputs) {
+                                  const std::vector<files::InputFile>& inputs) {
   std::error_code ignored;
   const bool is_folder = command.output.ends_with('/') || fs::is_directory(command.output, ignored);
   if (!is_folder) {
@@ -44,7 +44,7 @@ Result<std::vector<Planned>> plan(const EncodeCommand& command,
   if (!command.rejected.empty()) return wrong("--rejected needs one document");
   std::map<std::string, std::string> names;  // the input of each output
   std::vector<Planned> planned;
-  for (const InputFile& input : inputs) {
+  for (const files::InputFile& input : inputs) {
     if (!stays_below(input.relative)) {
       return wrong("there is no file in a folder for the name '" + input.relative + "'");
     }
@@ -58,8 +58,8 @@ Result<std::vector<Planned>> plan(const EncodeCommand& command,
   }
   for (const Planned& one : planned) {
     if (!fs::exists(one.output, ignored)) continue;
-    for (const InputFile& input : inputs) {
-      if (!is_same_file(one.output.string(), input.file)) continue;
+    for (const files::InputFile& input : inputs) {
+      if (!files::is_same_file(one.output.string(), input.file)) continue;
       return wrong("the output '" + one.output.string() + "' would replace an input");
     }
   }
@@ -69,7 +69,7 @@ Result<std::vector<Planned>> plan(const EncodeCommand& command,
 }  // namespace
 
 Exit run(const EncodeCommand& command) {
-  const std::vector<InputFile> inputs = list_inputs(command.files);
+  const std::vector<files::InputFile> inputs = list_inputs(command.files);
   EncodeCommand one = command;
   if (inputs.size() == 1) {
     one.input = inputs.front().name;

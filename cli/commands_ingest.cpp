@@ -11,13 +11,13 @@
 
 #include "base/quantity.h"
 #include "cli/commands.h"
-#include "cli/files.h"
-#include "cli/inputs.h"
 #include "cli/opened_store.h"
 #include "cli/outputs/rejected_files.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
+#include "files/files.h"
+#include "files/inputs.h"
 #include "pipeline/stored/collection_header.h"
 #include "pipeline/streaming/ingestion.h"
 
@@ -66,10 +66,10 @@ class IngestRun {
   bool has_several_files() const { return inputs_.size() > 1; }
 
   const IngestCommand& command_;
-  const std::vector<InputFile> inputs_;
+  const std::vector<files::InputFile> inputs_;
   const pipeline::IngestOptions options_;
   std::optional<delaunay::EngineWorkers> workers_;
-  EarlyFiles early_;
+  files::EarlyFiles early_;
   std::optional<RejectedFiles> rejected_;
   pipeline::IngestCounts counts_;  // of all files
   FilesOfFeatures files_;
@@ -104,7 +104,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   const std::string& name = inputs_[number].name;
   auto file = early_.take(number);
   if (!file) return std::move(file).error();
-  auto input = find_input(*std::move(file), name);
+  auto input = files::find_input(*std::move(file), name);
   if (!input) return std::move(input).error();
   ProgressBar bar(name, position_among(number + 1, inputs_.size()));
   std::optional<std::uint64_t> whole = input->bytes;
@@ -117,12 +117,12 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
       [&](std::uint64_t features, std::uint64_t bytes) {
         bar.show(features, share_done(features, count, bytes, whole));
       });
-  if (input->kind == InputKind::container) {
+  if (input->kind == files::InputKind::container) {
     if (rejected_) {
       return Error{ErrorCode::unsupported, "--rejected takes documents, no Watertight files"};
     }
     whole.reset();
-    const auto bytes = read_all(input->source, {});
+    const auto bytes = files::read_all(input->source, {});
     if (!bytes) return bytes.error();
     run.summary.add_file_bytes(bytes->size());
     const Status added = ingestion.add_container(*bytes, {}, pipeline::WholeModels::split);
@@ -133,7 +133,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   read.keep_text = options.contract == formats::Contract::exact;
   read.surfaces = options.surfaces;
   const auto header = [&] { return pipeline::collection_header(store, command_.collection); };
-  auto opened = open_input(*std::move(input), read, header);
+  auto opened = files::open_input(*std::move(input), read, header);
   if (!opened) return std::move(opened).error();
   count = opened->reader.feature_count();
   run.header = opened->reader.document().header.str();
@@ -164,9 +164,10 @@ Status IngestRun::open_rejected(bool gives_up_rights) {
   };
   if (command_.invalid != "skip") return wrong("needs --invalid skip");
   if (command_.rejected == "-") return wrong("needs the name of a file");
-  for (const InputFile& input : inputs_) {
+  for (const files::InputFile& input : inputs_) {
     for (const std::string& file : {command_.rejected, command_.rejected + ".report.json"}) {
-      if (is_same_file(file, input.file)) return wrong("'" + file + "' would replace an input");
+      if (files::is_same_file(file, input.file))
+        return wrong("'" + file + "' would replace an input");
     }
   }
   auto files = RejectedFiles::open(command_.rejected, gives_up_rights);
@@ -214,7 +215,7 @@ Exit IngestRun::run() {
   const auto start = std::chrono::steady_clock::now();
   // As root, opening a private cluster gives up the right to open other users' files.
   const bool gives_up_rights = ::geteuid() == 0 && command_.store.database_url.empty();
-  early_ = EarlyFiles(inputs_, gives_up_rights);
+  early_ = files::EarlyFiles(inputs_, gives_up_rights);
   if (Status opened = open_rejected(gives_up_rights); !opened) {
     complain("--rejected", opened.error());
     return Exit::error;

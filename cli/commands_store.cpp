@@ -10,10 +10,10 @@
 
 #include "base/quantity.h"
 #include "cli/commands.h"
-#include "cli/inputs.h"
 #include "cli/opened_store.h"
 #include "cli/outputs/output_files.h"
 #include "cli/terminal/printable.h"
+#include "files/inputs.h"
 #include "pipeline/export.h"
 #include "pipeline/stored/attributes.h"
 
@@ -55,7 +55,7 @@ class ExportRun {
 
  private:
   static bool is_sequence(const std::string& name) {
-    const auto format = format_of_name(name);
+    const auto format = files::format_of_name(name);
     return format && *format == Format::city_json_seq;
   }
   static std::string name_of(const std::string& output) {

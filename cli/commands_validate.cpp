@@ -8,14 +8,14 @@
 
 #include "base/quantity.h"
 #include "cli/commands.h"
-#include "cli/files.h"
 #include "cli/findings/baseline.h"
 #include "cli/findings/explain.h"
 #include "cli/findings/finding_list.h"
-#include "cli/inputs.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
+#include "files/files.h"
+#include "files/inputs.h"
 #include "formats/mesh/interior_shells.h"
 #include "pipeline/validate_stream.h"
 #include "report/feature_report.h"
@@ -77,7 +77,7 @@ std::string output_name(const std::string& path) { return path == "-" ? "standar
 
 /// One of the reports that a run writes to files.
 struct OpenReport {
-  std::unique_ptr<FileWriter> file;
+  std::unique_ptr<files::FileWriter> file;
   std::unique_ptr<report::FeatureReport> report;
   std::string path;
 };
@@ -133,10 +133,10 @@ class Validation {
   void end_file(const std::string& file, bool has_solids, bool has_surfaces);
   std::string note_without_solids(std::uint64_t surfaces) const;
   bool is_in_use(const std::string& path) const;
-  void validate_file(const InputFile& source);
-  Result<OpenedInput> open_source(const InputFile& source);
-  Result<formats::FeatureReader> with_cavities(const InputFile& source);
-  Result<pipeline::StreamOutcome> stream(const std::string& file, OpenedInput& input);
+  void validate_file(const files::InputFile& source);
+  Result<files::OpenedInput> open_source(const files::InputFile& source);
+  Result<formats::FeatureReader> with_cavities(const files::InputFile& source);
+  Result<pipeline::StreamOutcome> stream(const std::string& file, files::OpenedInput& input);
   template <class Call>
   Status tell_reports(const Call& call);
   void fail(const std::string& file, const Error& error) {
@@ -145,7 +145,7 @@ class Validation {
   }
 
   const ValidateCommand& command_;
-  const std::vector<InputFile> inputs_;
+  const std::vector<files::InputFile> inputs_;
   pipeline::StreamOptions options_;
   delaunay::EngineWorkers workers_;
   bool is_output_taken_ = false;  // a report goes to the standard output
@@ -161,13 +161,13 @@ class Validation {
 
 /// Whether a path is that of an input, or of a report that is open already.
 bool Validation::is_in_use(const std::string& path) const {
-  const auto is_it = [&](const std::string& other) { return is_same_file(path, other); };
+  const auto is_it = [&](const std::string& other) { return files::is_same_file(path, other); };
   const auto is_report = [&](const OpenReport& open) { return is_it(open.path); };
   if (std::any_of(reports_.begin(), reports_.end(), is_report)) return true;
   if (path == "-") return false;
   const auto& cavities = command_.interior_shells;
   if (!command_.baseline.empty() && is_it(command_.baseline)) return true;
-  const auto is_input = [&](const InputFile& input) { return is_it(input.file); };
+  const auto is_input = [&](const files::InputFile& input) { return is_it(input.file); };
   return std::any_of(inputs_.begin(), inputs_.end(), is_input) ||
          std::any_of(cavities.begin(), cavities.end(), is_it);
 }
@@ -180,12 +180,12 @@ bool Validation::open_reports() {
                                 "a report would replace an input or another report of this run"});
       return false;
     }
-    auto file = FileWriter::open(*path);
+    auto file = files::FileWriter::open(*path);
     if (!file) {
       fail(output_name(*path), file.error());
       return false;
     }
-    auto writer = std::make_unique<FileWriter>(*std::move(file));
+    auto writer = std::make_unique<files::FileWriter>(*std::move(file));
     auto sink = [to = writer.get()](std::string_view text) { return to->write(text); };
     auto report = make(std::move(sink), head_of(command_, options_));
     reports_.push_back({std::move(writer), std::move(report), *path});
@@ -195,7 +195,7 @@ bool Validation::open_reports() {
 
 bool Validation::open_baseline() {
   if (command_.baseline.empty()) return true;
-  const auto bytes = read_file(command_.baseline, options_.certify.limits);
+  const auto bytes = files::read_file(command_.baseline, options_.certify.limits);
   auto baseline = bytes ? Baseline::read(*bytes) : Result<Baseline>(bytes.error());
   if (!baseline) {
     fail(command_.baseline, baseline.error());
@@ -268,10 +268,11 @@ Status Validation::tell_reports(const Call& call) {
   return Done{};
 }
 
-Result<formats::FeatureReader> Validation::with_cavities(const InputFile& source) {
-  const auto one_solid = [&](const InputFile& from) -> Result<Document> {
-    const auto whole = read_whole(from, options_.certify.limits);
-    auto input = whole ? load_input(whole->name, whole->bytes, {}) : Result<Input>(whole.error());
+Result<formats::FeatureReader> Validation::with_cavities(const files::InputFile& source) {
+  const auto one_solid = [&](const files::InputFile& from) -> Result<Document> {
+    const auto whole = files::read_whole(from, options_.certify.limits);
+    auto input = whole ? files::load_input(whole->name, whole->bytes, {})
+                       : Result<files::Input>(whole.error());
     if (!input) return std::move(input).error();
     std::vector<Feature>& features = input->document.features;
     if (features.size() == 1 && features[0].solids.size() == 1) {
@@ -301,16 +302,17 @@ Result<formats::FeatureReader> Validation::with_cavities(const InputFile& source
   return formats::FeatureReader::of(*std::move(document));
 }
 
-Result<OpenedInput> Validation::open_source(const InputFile& source) {
+Result<files::OpenedInput> Validation::open_source(const files::InputFile& source) {
   formats::ReadOptions reading;
   reading.surfaces = surface_rule(command_.surfaces).reading;
-  if (command_.interior_shells.empty()) return open_input(source, reading);
+  if (command_.interior_shells.empty()) return files::open_input(source, reading);
   auto reader = with_cavities(source);
   if (!reader) return std::move(reader).error();
-  return OpenedInput{*std::move(reader), std::nullopt};
+  return files::OpenedInput{*std::move(reader), std::nullopt};
 }
 
-Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, OpenedInput& input) {
+Result<pipeline::StreamOutcome> Validation::stream(const std::string& file,
+                                                   files::OpenedInput& input) {
   ProgressBar bar(file, position_among(file_number_, inputs_.size()));
   const auto count = input.reader.feature_count();
   options_.progress = [&](std::uint64_t features, std::uint64_t bytes) {
@@ -329,7 +331,7 @@ Result<pipeline::StreamOutcome> Validation::stream(const std::string& file, Open
       });
 }
 
-void Validation::validate_file(const InputFile& source) {
+void Validation::validate_file(const files::InputFile& source) {
   const std::string& file = source.name;
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t solids_before = summary_.solids();
@@ -372,7 +374,7 @@ void Validation::validate_file(const InputFile& source) {
 Exit Validation::run() {
   const auto start = std::chrono::steady_clock::now();
   if (!open_baseline() || !open_reports()) return exit_;
-  for (const InputFile& input : inputs_) {
+  for (const files::InputFile& input : inputs_) {
     ++file_number_;
     validate_file(input);
   }

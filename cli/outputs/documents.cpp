@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/files.h"
-#include "cli/inputs.h"
+#include "files/files.h"
+#include "files/inputs.h"
 #include "pipeline/pipeline.h"
 
 namespace watertight::cli {
@@ -22,19 +22,19 @@ Exit fail(const std::string& file, const Error& error) {
 Exit save_documents(std::span<const Document> documents, const std::string& input,
                     const std::string& output, std::optional<Format> standard) {
   std::vector<std::string> names;
-  std::vector<FileWriter> files;
+  std::vector<files::FileWriter> files;
   for (const Document& document : documents) {
-    const std::string& name = names.emplace_back(numbered_name(output, names.size()));
-    if (name != "-" && is_same_file(name, input)) {
+    const std::string& name = names.emplace_back(files::numbered_name(output, names.size()));
+    if (name != "-" && files::is_same_file(name, input)) {
       return fail(input, {ErrorCode::invalid_argument,
                           "the output '" + name + "' would replace the input"});
     }
-    const auto format =
-        name == "-" ? Result<Format>(standard.value_or(document.format)) : format_of_name(name);
+    const auto format = name == "-" ? Result<Format>(standard.value_or(document.format))
+                                    : files::format_of_name(name);
     if (!format) return fail(name, format.error());
     const auto bytes = pipeline::convert_document(document, *format);
     if (!bytes) return fail(input, bytes.error());
-    auto file = FileWriter::open(name);
+    auto file = files::FileWriter::open(name);
     if (!file) return fail(name, file.error());
     const Status written = file->write(as_text(*bytes));
     if (!written) return fail(name, written.error());

@@ -96,14 +96,14 @@ ssize_t until_done(Call call) {
 void keep_rights(int socket, const std::string& output) {
   // Signals for the group of processes are for the other one, whose end ends this one.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
-  std::vector<FileWriter> files;
+  std::vector<files::FileWriter> files;
   Request request;
   while (until_done([&] { return ::recv(socket, &request, sizeof(request), MSG_WAITALL); }) ==
          static_cast<ssize_t>(sizeof(request))) {
     Status status = Done{};
     int descriptor = -1;
     if (request.kind == Request::Kind::open && files.size() < OutputFiles::kMost) {
-      auto file = FileWriter::open(numbered_name(output, files.size()));
+      auto file = files::FileWriter::open(files::numbered_name(output, files.size()));
       if (file) {
         descriptor = file->descriptor();
         files.push_back(*std::move(file));
@@ -194,7 +194,7 @@ class Keeper {
 struct OutputFiles::State {
   std::string output;
   std::optional<Keeper> keeper;
-  std::vector<FileWriter> files;
+  std::vector<files::FileWriter> files;
 };
 
 OutputFiles::OutputFiles(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -220,21 +220,21 @@ Status OutputFiles::add() {
                                        : "there are more than " + std::to_string(kMost) + " files"};
   }
   if (!state_->keeper) {
-    auto file = FileWriter::open(numbered_name(state_->output, size()));
+    auto file = files::FileWriter::open(files::numbered_name(state_->output, size()));
     if (!file) return std::move(file).error();
     state_->files.push_back(*std::move(file));
     return Done{};
   }
   const auto descriptor = state_->keeper->open();
   if (!descriptor) return descriptor.error();
-  state_->files.push_back(FileWriter::to(*descriptor));
+  state_->files.push_back(files::FileWriter::to(*descriptor));
   return Done{};
 }
 
 std::size_t OutputFiles::size() const { return state_->files.size(); }
 
 std::string OutputFiles::name(std::size_t number) const {
-  return state_->output == "-" ? "standard output" : numbered_name(state_->output, number);
+  return state_->output == "-" ? "standard output" : files::numbered_name(state_->output, number);
 }
 
 Status OutputFiles::write(std::size_t number, std::string_view text) {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/result.h"
-#include "cli/files.h"
+#include "files/files.h"
 
 namespace watertight::cli {
 

@@ -13,10 +13,10 @@
 
 #include "base/quantity.h"
 #include "cli/commands.h"
-#include "cli/inputs.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
+#include "files/inputs.h"
 #include "formats/geo_json/city_shapes.h"
 #include "formats/gml/city/city.h"
 #include "pipeline/streaming/feature_stream.h"
@@ -39,15 +39,16 @@ bool is_city_model(Format format) {
 }
 
 /// Opens an input feature by feature. GML becomes a city model with all its surfaces.
-Result<formats::FeatureReader> open_features(const InputFile& input) {
-  auto opened = open_input(input, {});
+Result<formats::FeatureReader> open_features(const files::InputFile& input) {
+  auto opened = files::open_input(input, {});
   if (!opened) return std::move(opened).error();
   if (opened->reader.document().format != Format::gml || input.name == "-") {
     return std::move(opened->reader);
   }
-  const auto whole = read_whole(input, {});
+  const auto whole = files::read_whole(input, {});
   if (!whole) return whole.error();
-  if (kind_of_input(whole->bytes) != InputKind::document) return std::move(opened->reader);
+  if (files::kind_of_input(whole->bytes) != files::InputKind::document)
+    return std::move(opened->reader);
   auto city = formats::city_model_of_gml(whole->bytes, {});
   if (!city) return std::move(city).error();
   return formats::FeatureReader::of(std::move(city->model));
@@ -60,7 +61,7 @@ class TileRun {
 
   /// Adds the features of an input; says what could not be read or shown. Errors: those of the
   /// input.
-  Status add(const InputFile& input, const std::string& position) {
+  Status add(const files::InputFile& input, const std::string& position) {
     auto reader = open_features(input);
     if (!reader) return std::move(reader).error();
     file_ = input.name;
@@ -267,7 +268,7 @@ Exit run(const TilesCommand& command) {
     complain(command.output, {ErrorCode::invalid_argument, "is there already; -o makes a folder"});
     return Exit::error;
   }
-  const std::vector<InputFile> inputs = list_inputs(command.files);
+  const std::vector<files::InputFile> inputs = list_inputs(command.files);
   TileRun tile_run(command);
   Exit exit = Exit::valid;
   for (std::size_t i = 0; i < inputs.size(); ++i) {

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/files.h"
-#include "cli/inputs.h"
 #include "cli/opened_store.h"
 #include "cli/terminal/printable.h"
+#include "files/files.h"
+#include "files/inputs.h"
 #include "server/access/keys.h"
 #include "server/features/cors.h"
 #include "server/features/links.h"
@@ -119,7 +119,7 @@ Exit run(const KeyCommand& command) {
   // The file is read first, so that no key is added to a file that is none of keys.
   std::string text;
   if (std::filesystem::exists(command.file)) {
-    const auto bytes = read_file(command.file, Limits{});
+    const auto bytes = files::read_file(command.file, Limits{});
     if (!bytes) return fail(bytes.error());
     text = as_text(*bytes);
   }

@@ -7,34 +7,32 @@
 #include <iterator>
 #include <utility>
 
-#include "archives/expansion.h"
 #include "base/ascii.h"
 #include "base/quantity.h"
 #include "cli/remote/http_file.h"
-#include "cli/sources/zip_file.h"
 #include "cli/terminal/printable.h"
-#include "formats/document.h"
+#include "files/names.h"
+#include "files/zip_documents.h"
 
 namespace watertight::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kCompressedEndings[] = {".gz", ".gzip", ".zst", ".zstd"};
-
 /// An input that gives an error when it is opened.
-InputFile failing(const std::string& name, Error error) {
-  return {name, name, name, [error = std::move(error)]() -> Result<OpenedFile> { return error; }};
+files::InputFile failing(const std::string& name, Error error) {
+  return {name, name, name,
+          [error = std::move(error)]() -> Result<files::OpenedFile> { return error; }};
 }
 
-InputFile plain(const std::string& path, const std::string& relative) {
-  return {path, path, relative, [path] { return open_file(path); }};
+files::InputFile plain(const std::string& path, const std::string& relative) {
+  return {path, path, relative, [path] { return files::open_file(path); }};
 }
 
 /// A document on a web server, which is read whole.
-InputFile remote(const std::string& url) {
+files::InputFile remote(const std::string& url) {
   const std::string path = url.substr(0, url.find_first_of("?#"));
-  const auto open = [url]() -> Result<OpenedFile> {
+  const auto open = [url]() -> Result<files::OpenedFile> {
     auto bytes = read_http_file(url, {});
     if (!bytes) return std::move(bytes).error();
     const std::uint64_t size = bytes->size();
@@ -45,18 +43,9 @@ InputFile remote(const std::string& url) {
       given += count;
       return count;
     };
-    return OpenedFile{std::move(source), size};
+    return files::OpenedFile{std::move(source), size};
   };
   return {url, url, path.substr(path.find_last_of('/') + 1), open};
-}
-
-bool is_zip(const std::string& path) {
-  const auto file = open_file(path);
-  if (!file) return false;
-  Bytes first(archives::kMagicBytes);
-  const auto count = file->source(first);
-  return count &&
-         archives::compression_of(ByteView(first).first(*count)) == archives::Compression::zip;
 }
 
 void tell_skipped(const std::string& name, std::uint64_t count) {
@@ -72,7 +61,7 @@ Error no_document(const char* place) {
 /// Collects the inputs of one argument.
 class Collector {
  public:
-  explicit Collector(std::vector<InputFile>& inputs) : inputs_(inputs) {}
+  explicit Collector(std::vector<files::InputFile>& inputs) : inputs_(inputs) {}
 
   void add(const std::string& argument) {
     std::error_code ignored;
@@ -82,7 +71,7 @@ class Collector {
       inputs_.push_back(remote(argument));
     } else if (fs::is_directory(argument, ignored)) {
       add_folder(argument);
-    } else if (fs::is_regular_file(argument, ignored) && is_zip(argument)) {
+    } else if (fs::is_regular_file(argument, ignored) && files::is_zip(argument)) {
       add_zip(argument, fs::path(argument).filename().string(), false);
     } else {
       inputs_.push_back(plain(argument, fs::path(argument).filename().string()));
@@ -100,7 +89,7 @@ class Collector {
       if (!entry->is_regular_file(ignored)) continue;
       const bool is_hidden = entry->path().filename().string().starts_with('.');
       const std::string path = entry->path().string();
-      if (!is_hidden && (is_document_name(path) || lower_case(path).ends_with(".zip"))) {
+      if (!is_hidden && (files::is_document_name(path) || lower_case(path).ends_with(".zip"))) {
         paths.push_back(path);
       } else {
         ++skipped_;
@@ -110,7 +99,7 @@ class Collector {
     std::sort(paths.begin(), paths.end());
     for (const std::string& path : paths) {
       const std::string relative = fs::path(path).lexically_relative(folder).string();
-      if (is_zip(path)) {
+      if (files::is_zip(path)) {
         add_zip(path, relative, true);
       } else {
         inputs_.push_back(plain(path, relative));
@@ -124,7 +113,7 @@ class Collector {
   }
 
   void add_zip(const std::string& path, const std::string& relative, bool is_in_folder) {
-    auto documents = documents_of_zip(path, path);
+    auto documents = files::documents_of_zip(path, path);
     if (!documents) {
       inputs_.push_back(failing(path, documents.error()));
       return;
@@ -133,39 +122,25 @@ class Collector {
     if (documents->inputs.empty() && !is_in_folder) {
       inputs_.push_back(failing(path, no_document("archive")));
     }
-    for (InputFile& input : documents->inputs) {
+    for (files::InputFile& input : documents->inputs) {
       input.relative = relative + input.name.substr(path.size());
       inputs_.push_back(std::move(input));
     }
   }
 
-  std::vector<InputFile>& inputs_;
+  std::vector<files::InputFile>& inputs_;
   std::uint64_t skipped_ = 0;
 };
 
 }  // namespace
 
-std::string name_without_compression(std::string_view name) {
-  const std::string lower = lower_case(name);
-  for (const std::string_view ending : kCompressedEndings) {
-    if (lower.ends_with(ending)) return std::string(name.substr(0, name.size() - ending.size()));
-  }
-  if (lower.ends_with(".tgz")) return std::string(name.substr(0, name.size() - 4)) + ".tar";
-  return std::string(name);
-}
-
-bool is_document_name(std::string_view name) {
-  const std::string plain_name = lower_case(name_without_compression(name));
-  return plain_name.ends_with(".wt") || formats::has_known_ending(plain_name);
-}
-
-std::vector<InputFile> list_inputs(std::span<const std::string> arguments) {
-  std::vector<InputFile> inputs;
+std::vector<files::InputFile> list_inputs(std::span<const std::string> arguments) {
+  std::vector<files::InputFile> inputs;
   for (const std::string& argument : arguments) Collector(inputs).add(argument);
   return inputs;
 }
 
-Result<InputFile> single_input(const std::string& argument) {
+Result<files::InputFile> single_input(const std::string& argument) {
   auto inputs = list_inputs({&argument, 1});
   if (inputs.size() == 1) return std::move(inputs.front());
   return Error{ErrorCode::invalid_argument, "this command reads one document, and there are " +

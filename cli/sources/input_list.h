@@ -6,28 +6,19 @@
 
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "cli/files.h"
+#include "files/files.h"
 
 namespace watertight::cli {
-
-/// Whether the ending of a name is that of a document, a Watertight file, or one of these
-/// compressed by gzip or Zstandard.
-bool is_document_name(std::string_view name);
-
-/// A name without an ending that says that the file is compressed: ".gz", ".zst", ...; "a.tar" for
-/// "a.tgz".
-std::string name_without_compression(std::string_view name);
 
 /// The inputs of arguments, in their order; those of a folder (with its subfolders) and of an
 /// archive by the bytes of their names. In folders and archives other files are skipped, with a
 /// note on standard error. An argument that cannot be read is an input that gives the reason when
 /// it is opened. Cost: linear in the number of files; reads the first bytes of each.
-std::vector<InputFile> list_inputs(std::span<const std::string> arguments);
+std::vector<files::InputFile> list_inputs(std::span<const std::string> arguments);
 
 /// The only input that an argument stands for. Errors: invalid_argument if there are several.
-Result<InputFile> single_input(const std::string& argument);
+Result<files::InputFile> single_input(const std::string& argument);
 
 }  // namespace watertight::cli

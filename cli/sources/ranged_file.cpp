@@ -6,16 +6,16 @@
 #include <utility>
 
 #include "base/quantity.h"
-#include "cli/files.h"
 #include "cli/remote/http_file.h"
 #include "cli/terminal/printable.h"
+#include "files/files.h"
 
 namespace watertight::cli {
 namespace {
 
 /// A file on a disk.
 Result<pipeline::FileBytes> open_disk_file(const std::string& path) {
-  auto random = open_random(path);
+  auto random = files::open_random(path);
   if (!random) return std::move(random).error();
   pipeline::FileBytes file;
   file.size = random->size;
@@ -37,7 +37,7 @@ Result<pipeline::FileBytes> open_disk_file(const std::string& path) {
 
 /// Standard input, read whole.
 Result<pipeline::FileBytes> read_pipe() {
-  auto bytes = read_file("-", {});
+  auto bytes = files::read_file("-", {});
   if (!bytes) return std::move(bytes).error();
   const auto all = std::make_shared<const Bytes>(*std::move(bytes));
   pipeline::FileBytes file;

@@ -35,7 +35,7 @@ import sys
 import tempfile
 
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
-           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "pipeline", "report", "web", "server", "cli", "sql"]
+           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "pipeline", "files", "report", "web", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
 MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/

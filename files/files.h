@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Files of the command line: read whole or in pieces, written atomically; "-" is standard input or
+// Files: read whole or in pieces, written atomically; "-" is standard input or
 // output.
 #pragma once
 
@@ -19,7 +19,7 @@
 #include "base/limits.h"
 #include "base/result.h"
 
-namespace watertight::cli {
+namespace watertight::files {
 
 /// A file, standard input or a member of an archive, read piece by piece.
 struct OpenedFile {
@@ -101,4 +101,4 @@ std::string numbered_name(const std::string& output, std::size_t number);
 /// Whether writing one file would destroy the other. Devices and pipes can be written many times.
 bool is_same_file(const std::string& a, const std::string& b);
 
-}  // namespace watertight::cli
+}  // namespace watertight::files

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/files.h"
+#include "files/files.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace watertight::cli {
+namespace watertight::files {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 16;
@@ -312,4 +312,4 @@ bool is_same_file(const std::string& a, const std::string& b) {
   return place(a) == place(b);
 }
 
-}  // namespace watertight::cli
+}  // namespace watertight::files

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/inputs.h"
+#include "files/inputs.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "base/ascii.h"
-#include "cli/sources/input_list.h"
-#include "cli/sources/zip_file.h"
 #include "codec/page_file.h"
+#include "files/names.h"
+#include "files/zip_documents.h"
 #include "pipeline/container.h"
 
-namespace watertight::cli {
+namespace watertight::files {
 namespace {
 
 /// The number of bytes that are enough to detect the kind.
@@ -180,4 +180,4 @@ Result<Format> format_of_name(const std::string& path) {
                                            ".wkb .ewkb"};
 }
 
-}  // namespace watertight::cli
+}  // namespace watertight::files

@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "cli/files.h"
+#include "files/files.h"
 
-namespace watertight::cli {
+namespace watertight::files {
+
+/// Whether a file is a zip archive, by its first bytes. False for one that cannot be read.
+bool is_zip(const std::string& path);
 
 /// The documents of an archive: its members with a known ending, or its only member whatever the
 /// name; in byte order of their names.
@@ -25,4 +28,4 @@ Result<ZipDocuments> documents_of_zip(const std::string& path, const std::string
 /// source and of documents_of_zip(); unsupported if there are several.
 Result<InputFile> only_member(const ByteSource& source);
 
-}  // namespace watertight::cli
+}  // namespace watertight::files

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/sources/zip_file.h"
+#include "files/zip_documents.h"
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "archives/expansion.h"
 #include "archives/zip.h"
-#include "cli/sources/input_list.h"
+#include "files/names.h"
 
-namespace watertight::cli {
+namespace watertight::files {
 namespace {
 
 using BytesOpener = std::function<Result<archives::RandomBytes>()>;
@@ -62,6 +63,15 @@ Result<ZipDocuments> documents_of(const BytesOpener& open, const std::string& pa
 
 }  // namespace
 
+bool is_zip(const std::string& path) {
+  const auto file = open_file(path);
+  if (!file) return false;
+  Bytes first(archives::kMagicBytes);
+  const auto count = file->source(first);
+  return count &&
+         archives::compression_of(ByteView(first).first(*count)) == archives::Compression::zip;
+}
+
 Result<ZipDocuments> documents_of_zip(const std::string& path, const std::string& name) {
   return documents_of([path] { return open_random(path); }, path, name);
 }
@@ -88,4 +98,4 @@ Result<InputFile> only_member(const ByteSource& source) {
                    std::to_string(documents->inputs.size()) + "; give the archive as a file"};
 }
 
-}  // namespace watertight::cli
+}  // namespace watertight::files

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "base/bytes.h"
-#include "cli/files.h"
+#include "files/files.h"
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
 
-namespace watertight::cli {
+namespace watertight::files {
 
 enum class InputKind : std::uint8_t {
   document,
@@ -72,4 +72,4 @@ Result<WholeInput> read_whole(const InputFile& input, const Limits& limits);
 /// The format that an output file's name asks for. Errors: unsupported naming the known endings.
 Result<Format> format_of_name(const std::string& path);
 
-}  // namespace watertight::cli
+}  // namespace watertight::files

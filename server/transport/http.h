@@ -4,6 +4,7 @@
 // parts of HTTP that routes use: percent-decoding, query parameters, content types, Accept.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -23,11 +24,23 @@ struct HeaderField {
   std::string value;
 };
 
+struct Response;
+
+/// Takes the body of a request piece by piece, so that a body can be longer than memory. One thread
+/// at a time calls it; it may wait for a disk, and the client waits meanwhile.
+class BodySink {
+ public:
+  virtual ~BodySink() = default;
+  /// Returns the answer that ends the request, if the piece cannot be taken.
+  virtual std::optional<Response> take(std::string_view piece) = 0;
+};
+
 struct Request {
   std::string method;  // "GET", ...
   std::string target;  // as received: path and query, percent-encoded
   std::vector<HeaderField> headers;
   std::string body;
+  std::shared_ptr<BodySink> sink = nullptr;  // has the body, if present
 
   /// The value of the first field `name` (lower case); nullptr if there is none.
   const std::string* header(std::string_view name) const;
@@ -52,6 +65,9 @@ struct Response {
   /// Makes the parts that follow `body` while they are sent; empty if `body` is whole. One thread
   /// at a time calls it, after the part before was sent, and never again once the client is gone.
   BodyParts rest = {};
+  /// The time before each part of `rest`, for an answer that tells of something while it happens.
+  /// Such an answer ends early when the server stops.
+  std::chrono::milliseconds pause = std::chrono::milliseconds(0);
   /// If present, the answer is still to be made, by this work in another lane; the other members
   /// have no meaning then.
   std::shared_ptr<const FurtherWork> further = nullptr;

@@ -218,6 +218,7 @@ void AsioServer::stop() {
   for (const Lane lane : {Lane::computing, Lane::small, Lane::reading}) {
     environment_.threads_of(lane).threads.join();
   }
+  environment_.disk.join();
   wait_for_sessions(1);
   guard_.reset();
   context_.stop();

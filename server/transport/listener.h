@@ -22,6 +22,8 @@ namespace watertight::server {
 struct Admission {
   std::string key;  // the name of the access key, for the log; "" = none
   std::optional<Response> refusal = std::nullopt;
+  std::shared_ptr<BodySink> sink = nullptr;  // for the body; null: it stays in memory
+  std::uint64_t sink_bytes = 0;              // the most bytes that the sink takes
 };
 
 /// An answered request, as it is logged. The texts live as long as the call.
@@ -74,6 +76,8 @@ struct ServerOptions {
   std::size_t small_queue = 256;
   std::size_t reading_queue = 256;
   std::size_t downloads = 16;  // answers in parts (Response::rest) at once; more get 503
+  std::size_t watchers = 64;   // the same, of those with pauses (Response::pause)
+  std::size_t uploads = 64;    // bodies that go to a sink at once; more get 503
 };
 
 /// A listening server with its threads.

@@ -88,16 +88,16 @@ Response too_many(std::string detail) {
   return to_response(answer);
 }
 
+Response too_large(std::uint64_t most) {
+  return problem(413, "limit-exceeded",
+                 "the request body is larger than " + std::to_string(most) + " bytes");
+}
+
 std::optional<Response> answer_to(const error_code& error, const ServerOptions& options) {
   if (error == http::error::header_limit) {
     return problem(
         431, "header-too-large",
         "the request header is larger than " + std::to_string(options.header_bytes) + " bytes");
-  }
-  if (error == http::error::body_limit) {
-    return problem(
-        413, "limit-exceeded",
-        "the request body is larger than " + std::to_string(options.body_bytes) + " bytes");
   }
   if (error == http::error::bad_version) {
     return problem(505, "http-version", "this service speaks HTTP/1.1 and HTTP/1.0");

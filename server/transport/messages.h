@@ -29,6 +29,9 @@ Response busy(std::string detail);
 /// 429: this client's address has as much as it may have at once.
 Response too_many(std::string detail);
 
+/// 413: the body has more than `most` bytes.
+Response too_large(std::uint64_t most);
+
 /// The answer to a request that could not be read; nothing when the connection is simply over.
 std::optional<Response> answer_to(const boost::system::error_code& error,
                                   const ServerOptions& options);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/transport/session.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <array>
 #include <boost/asio/co_spawn.hpp>
@@ -14,6 +12,7 @@
 #include <boost/beast/http.hpp>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <optional>
 #include <span>
@@ -23,6 +22,7 @@
 #include "server/transport/client_watch.h"
 #include "server/transport/messages.h"
 #include "server/transport/received_body.h"
+#include "server/transport/sending.h"
 
 namespace watertight::server {
 namespace {
@@ -40,6 +40,8 @@ constexpr std::size_t kReadBytes = 16 * 1024;
 constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
 constexpr std::size_t kUnbudgeted = 64 * 1024;  // bytes of a body that no budget limits
+constexpr std::size_t kSinkBytes = 256 * 1024;  // that a sink gets at once
+constexpr std::size_t kDiskThreads = 2;
 // A read that has waited so long for a thread is refused: those before it hang, and it would too.
 constexpr std::chrono::seconds kLongestReadWait{2};
 
@@ -51,14 +53,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Makes the scheduler prefer other threads to this one, so that long computing does not delay
-/// short requests when there are more threads than cores.
-void step_back() {
-  constexpr int kNice = 10;
-  thread_local const bool has_stepped_back = setpriority(PRIO_PROCESS, 0, kNice) == 0;
-  static_cast<void>(has_stepped_back);  // without success the thread computes as any other does
-}
-
 Response made_guarded(const std::function<Response()>& make) {
   try {
     return make();
@@ -66,16 +60,6 @@ Response made_guarded(const std::function<Response()>& make) {
     return busy("not enough memory for this request now");
   } catch (const std::exception& failure) {
     return problem(500, "internal", std::string("unexpected failure: ") + failure.what());
-  }
-}
-
-Result<std::string> next_part_guarded(const BodyParts& parts, const CancelPoll& is_cancelled) {
-  try {
-    return parts(is_cancelled);
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::limit_exceeded, "not enough memory"};
-  } catch (const std::exception& failure) {
-    return Error{ErrorCode::unavailable, std::string("unexpected failure: ") + failure.what()};
   }
 }
 
@@ -148,6 +132,7 @@ class Session {
   awaitable<bool> serve_one();
   awaitable<std::optional<Response>> receive(RequestParser& parser);
   awaitable<std::optional<Response>> receive_body(RequestParser& parser);
+  awaitable<std::optional<Response>> hand_to_sink();
   awaitable<Response> answer(Request& request);
   // These take references to objects with names: GCC 12 destroys a temporary object in the argument
   // of a co_await twice.
@@ -156,9 +141,6 @@ class Session {
   awaitable<Response> respond(Request& request, const CancelPoll& cancel);
   awaitable<Response> finish(const std::shared_ptr<const FurtherWork>& first,
                              const CancelPoll& cancel);
-  awaitable<Status> send(Response response, bool keep_alive);
-  awaitable<Status> send_parts(Response response, bool keep_alive, std::uint64_t& sent);
-  awaitable<Result<std::string>> next_part(const BodyParts& parts);
   awaitable<bool> download(Response response, bool keep_alive, Clock::time_point start);
   awaitable<void> linger();
   void log_answer(unsigned status, std::uint64_t bytes, Clock::time_point start,
@@ -175,6 +157,8 @@ class Session {
   std::string note_;                       // of the answer, for the log
   ReceivedBody body_;                      // of the request, until the request has it
   std::optional<BudgetShare> body_share_;  // held from the header to the answer
+  std::shared_ptr<BodySink> sink_;         // where the body goes; null: body_
+  std::uint64_t most_bytes_ = 0;           // of the body
   bool is_head_ = false;
   unsigned version_ = 11;
 };
@@ -237,7 +221,13 @@ awaitable<std::optional<Response>> Session::receive(RequestParser& parser) {
     Admission admission = environment_.application.admit(to_request(parser));
     key_ = std::move(admission.key);
     if (admission.refusal) co_return std::move(admission.refusal);
+    sink_ = std::move(admission.sink);
+    if (sink_) most_bytes_ = admission.sink_bytes;
   }
+  if (parser.content_length() && *parser.content_length() > most_bytes_) {
+    co_return too_large(most_bytes_);
+  }
+  parser.body_limit(most_bytes_);
   if (lower_case(std::string(parser.get()[http::field::expect])) == "100-continue" &&
       buffer_.size() == 0 && !parser.is_done()) {
     const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -247,16 +237,36 @@ awaitable<std::optional<Response>> Session::receive(RequestParser& parser) {
   co_return co_await receive_body(parser);
 }
 
-/// Reads the body into body_. The bytes that have arrived, not those that were promised, are taken
-/// from the budget for bodies and buy time. Returns as receive() does.
+/// Passes what has arrived of the body to the sink, on a thread that may wait for the disk.
+awaitable<std::optional<Response>> Session::hand_to_sink() {
+  using Taken = std::optional<Response>;
+  auto work = [sink = sink_, piece = body_.take()]() -> awaitable<Taken> {
+    Taken refusal;
+    const Response done = made_guarded([&]() -> Response {
+      refusal = sink->take(piece);
+      return {};
+    });
+    if (!refusal && done.status != Response{}.status) refusal = done;
+    co_return refusal;
+  };
+  co_return co_await asio::co_spawn(environment_.disk.get_executor(), std::move(work),
+                                    use_awaitable);
+}
+
+/// Reads the body into body_, or by way of it into the sink. The bytes that have arrived, not those
+/// that were promised, buy time, and those in memory are taken from the budget for bodies. Returns
+/// as receive() does.
 awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) {
   const Clock::time_point start = Clock::now();
   body_.clear();
   body_share_.emplace(environment_.bodies, 0);
+  const BudgetShare upload(environment_.uploads, sink_ ? 1 : 0);
+  if (!upload.is_granted()) co_return busy("too many documents are being uploaded");
   stream_.expires_never();
+  std::uint64_t received = 0;
   while (!parser.is_done()) {
     const double allowed =
-        options_.body_seconds + static_cast<double>(body_.size()) / options_.body_rate;
+        options_.body_seconds + static_cast<double>(received) / options_.body_rate;
     const TimeLimit limit(connection_, start + seconds(allowed));
     const std::span<char> space = body_.space();
     parser.get().body().data = space.data();
@@ -266,9 +276,18 @@ awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) 
     co_await http::async_read_some(stream_, buffer_, parser, redirect_error(use_awaitable, error));
     if (error == http::error::need_buffer) error = {};
     if (limit.is_over()) co_return problem(408, "request-timeout", "the body came too slowly");
+    if (error == http::error::body_limit) co_return too_large(most_bytes_);
     if (error) co_return answer_to(error, options_).value_or(Response{0, "", "", {}});
-    body_.add(space.size() - parser.get().body().size);
+    const std::size_t count = space.size() - parser.get().body().size;
+    body_.add(count);
+    received += count;
     connection_->body_bytes = body_.size();
+    if (sink_) {
+      if (body_.size() < kSinkBytes && !parser.is_done()) continue;
+      auto refusal = co_await hand_to_sink();
+      if (refusal) co_return refusal;
+      continue;
+    }
     const bool is_small = body_.size() <= kUnbudgeted;
     if (!is_small && !body_share_->grow_to(body_.size())) {
       co_return busy("too many large requests are being received");
@@ -387,7 +406,10 @@ awaitable<bool> Session::serve_one() {
   const Clock::time_point start = Clock::now();
   RequestParser parser;
   parser.header_limit(options_.header_bytes);
-  parser.body_limit(options_.body_bytes);
+  parser.body_limit(
+      std::numeric_limits<std::uint64_t>::max());  // until it is known where the body goes
+  most_bytes_ = options_.body_bytes;
+  sink_.reset();
   std::optional<Response> refusal = co_await receive(parser);
   if (refusal) {
     if (refusal->status == 0) {
@@ -397,7 +419,8 @@ awaitable<bool> Session::serve_one() {
     }
     const unsigned status = refusal->status;
     const std::uint64_t size = refusal->body.size();
-    const Status sent = co_await send(*std::move(refusal), false);
+    Sender sender(connection_, environment_, is_head_, version_);
+    const Status sent = co_await sender.send(*std::move(refusal), false);
     log_answer(status, size, start, sent);
     co_await linger();
     co_return false;
@@ -408,6 +431,7 @@ awaitable<bool> Session::serve_one() {
   Response response;
   {
     Request request = to_request(parser);
+    request.sink = std::move(sink_);
     if (!takes_body(parser)) body_.clear();
     if (body_.size() <= kUnbudgeted) request.body = body_.take();
     response = co_await answer(request);
@@ -424,102 +448,31 @@ awaitable<bool> Session::serve_one() {
   const unsigned status = response.status;
   const std::uint64_t size = response.body.size();
   note_ = std::move(response.note);
-  const Status sent = co_await send(std::move(response), goes_on);
+  Sender sender(connection_, environment_, is_head_, version_);
+  const Status sent = co_await sender.send(std::move(response), goes_on);
   log_answer(status, size, start, sent);
   co_return sent.has_value() && goes_on;
-}
-
-awaitable<Status> Session::send(Response response, bool keep_alive) {
-  const double size = static_cast<double>(response.body.size());
-  stream_.expires_after(seconds(options_.write_seconds + size / options_.write_rate));
-  auto message = to_message(std::move(response), is_head_, keep_alive, version_);
-  http::serializer<false, http::string_body> serializer{message};
-  error_code error;
-  if (is_head_) {
-    co_await http::async_write_header(stream_, serializer, redirect_error(use_awaitable, error));
-  } else {
-    co_await http::async_write(stream_, serializer, redirect_error(use_awaitable, error));
-  }
-  if (error) co_return Error{ErrorCode::unavailable, error.message()};
-  co_return Done{};
-}
-
-/// Makes the next part on a thread for computing.
-awaitable<Result<std::string>> Session::next_part(const BodyParts& parts) {
-  if (environment_.is_cancelled) co_return Error{ErrorCode::cancelled, "the server is stopping"};
-  using Made = std::optional<Result<std::string>>;  // co_spawn needs a type with a default value
-  const SessionEnvironment& environment = environment_;
-  const ClientWatch watch(connection_);
-  const CancelPoll is_cancelled = [&environment, left = watch.has_left()] {
-    return environment.is_cancelled || *left;
-  };
-  auto work = [&parts, &is_cancelled]() -> awaitable<Made> {
-    step_back();
-    co_return next_part_guarded(parts, is_cancelled);
-  };
-  Made made = co_await asio::co_spawn(environment_.computing.threads.get_executor(),
-                                      std::move(work), use_awaitable);
-  if (!made) co_return Error{ErrorCode::unavailable, "there is no next part"};
-  co_return *std::move(made);
-}
-
-/// Sends an answer in parts: in chunks, or, in HTTP 1.0, until the connection ends. Each part is
-/// made after the one before is sent, so that a slow client takes the memory of one part only.
-awaitable<Status> Session::send_parts(Response response, bool keep_alive, std::uint64_t& sent) {
-  auto message = head_of<http::buffer_body>(response, keep_alive, version_);
-  message.chunked(version_ > 10);
-  message.body().data = nullptr;
-  message.body().more = true;
-  http::serializer<false, http::buffer_body> serializer{message};
-  error_code error;
-  // The time that the client still has to take what is being sent. Each byte adds to it, a client
-  // below write_rate uses write_seconds up, and the time in which parts are made does not count.
-  const Clock::duration reserve = seconds(options_.write_seconds);
-  Clock::duration left = reserve;
-  stream_.expires_after(left);
-  co_await http::async_write_header(stream_, serializer, redirect_error(use_awaitable, error));
-  Result<std::string> part = std::move(response.body);
-  if (part->empty() && !error && !is_head_) {
-    stream_.expires_never();
-    part = co_await next_part(response.rest);
-    if (!part) co_return part.error();
-  }
-  while (!error && !is_head_) {
-    message.body().data = part->empty() ? nullptr : part->data();
-    message.body().size = part->size();
-    message.body().more = !part->empty();
-    left =
-        std::min(left, reserve) + seconds(static_cast<double>(part->size()) / options_.write_rate);
-    const Clock::time_point begin = Clock::now();
-    stream_.expires_after(left);
-    co_await http::async_write(stream_, serializer, redirect_error(use_awaitable, error));
-    left -= Clock::now() - begin;
-    if (error == http::error::need_buffer) error = {};
-    if (error || part->empty()) break;
-    sent += part->size();
-    stream_.expires_never();
-    part = co_await next_part(response.rest);
-    if (!part) co_return part.error();
-  }
-  if (error) co_return Error{ErrorCode::unavailable, error.message()};
-  co_return Done{};
 }
 
 /// Sends an answer in parts, unless too many are being sent. True when the answer is sent and the
 /// connection can go on. An answer that is cut off resets the connection, because without chunks
 /// the end of the connection alone would look like that of the body.
 awaitable<bool> Session::download(Response response, bool keep_alive, Clock::time_point start) {
-  const BudgetShare place(environment_.downloads, 1);
+  const bool is_watcher = response.pause.count() > 0;
+  const BudgetShare place(is_watcher ? environment_.watchers : environment_.downloads, 1);
+  Sender sender(connection_, environment_, is_head_, version_);
   if (!place.is_granted()) {
-    Response refusal = busy("too many downloads are running");
+    Response refusal =
+        busy(is_watcher ? "too many clients watch jobs" : "too many downloads are running");
     const std::uint64_t size = refusal.body.size();
-    const Status sent_refusal = co_await send(std::move(refusal), keep_alive);
+    const Status sent_refusal = co_await sender.send(std::move(refusal), keep_alive);
     log_answer(503, size, start, sent_refusal);
     co_return sent_refusal.has_value() && keep_alive;
   }
   const unsigned status = response.status;
   std::uint64_t sent = 0;
-  const Status done = co_await send_parts(std::move(response), keep_alive && version_ > 10, sent);
+  const Status done =
+      co_await sender.send_parts(std::move(response), keep_alive && version_ > 10, sent);
   log_answer(status, sent, start, done);
   if (done) co_return version_ > 10;
   error_code ignored;
@@ -570,7 +523,10 @@ SessionEnvironment::SessionEnvironment(const ServerOptions& server_options,
       small(server_options.small_threads, server_options.small_queue),
       reading(server_options.reading_threads, server_options.reading_queue),
       bodies(server_options.body_bytes_together),
-      downloads(server_options.downloads) {}
+      downloads(server_options.downloads),
+      watchers(server_options.watchers),
+      uploads(server_options.uploads),
+      disk(kDiskThreads) {}
 
 awaitable<void> run_session(std::shared_ptr<Connection> connection,
                             SessionEnvironment& environment) {

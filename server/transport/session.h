@@ -103,6 +103,9 @@ struct SessionEnvironment {
   LaneThreads reading;
   Budget bodies;
   Budget downloads;
+  Budget watchers;
+  Budget uploads;
+  boost::asio::thread_pool disk;  // where sinks take bodies
   std::atomic<bool> is_draining = false;
   std::atomic<bool> is_cancelled = false;
   std::atomic<std::size_t> sessions = 0;

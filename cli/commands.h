@@ -144,6 +144,7 @@ struct ServeCommand {
   std::string cors;      // whose web pages may read, "" for none but the service's own
   std::optional<std::size_t> connections_per_address;
   bool requires_preconditions = false;
+  std::string jobs_folder;         // "" for that in the data directory, if there is one
   std::string keys_file;           // "" for none
   bool is_open = false;            // nobody needs a key, though other machines reach the address
   bool reading_is_public = false;  // with keys_file

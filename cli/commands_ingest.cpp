@@ -189,16 +189,6 @@ Status IngestRun::add_rejected(std::size_t number, FileRun run) {
   return Done{};
 }
 
-void add(const pipeline::IngestCounts& more, pipeline::IngestCounts& all) {
-  all.total += more.total;
-  all.invalid += more.invalid;
-  all.undecided += more.undecided;
-  all.stored += more.stored;
-  all.unproven += more.unproven;
-  all.unproven_features += more.unproven_features;
-  all.verdict = pipeline::worse(all.verdict, more.verdict);
-}
-
 void tell_invalid(const std::string& file, const pipeline::IngestCounts& counts) {
   std::string text = "not all features are valid; " + std::to_string(counts.stored) + " of " +
                      std::to_string(counts.total) + " were stored";
@@ -242,7 +232,7 @@ Exit IngestRun::run() {
     if (counts->stored > 0) tell_replaced(i, run);
     run.summary.add_stored(counts->stored);
     summary_.add(run.summary);
-    add(*counts, counts_);
+    counts_.add(*counts);
     if (Status added = add_rejected(i, std::move(run)); !added) {
       complain(command_.rejected, added.error());
       return Exit::error;

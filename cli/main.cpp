@@ -339,6 +339,9 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   sub->add_option("--base-url", command.base_url,
                   "the address under which clients reach the service, for links; without it, that "
                   "of each request");
+  sub->add_option("--jobs-dir", command.jobs_folder,
+                  "folder for the files of jobs (default: 'jobs' in --data-dir; no jobs without)")
+      ->envname("WATERTIGHT_JOBS_DIR");
   sub->add_flag("--require-preconditions", command.requires_preconditions,
                 "refuse writes of features without If-Match or If-None-Match");
   sub->add_flag("--print-config", command.prints_options,

@@ -44,6 +44,7 @@ Result<OpenedDatabase> open_database(const StoreChoice& choice,
   auto cluster = store::PrivateCluster::start(options);
   if (!cluster) return std::move(cluster).error();
   opened.connection = (*cluster)->connection();
+  opened.data_directory = options.data_directory;
   opened.cluster = *std::move(cluster);
   return opened;
 }

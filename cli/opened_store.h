@@ -18,6 +18,7 @@ namespace watertight::cli {
 struct OpenedDatabase {
   std::unique_ptr<store::PrivateCluster> cluster;
   std::string connection;
+  std::string data_directory;  // of the cluster
 };
 
 /// Gives up the rights that only root has, and those that the program never needs: with a data

@@ -347,6 +347,16 @@ CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions
   return own;
 }
 
+void IngestCounts::add(const IngestCounts& other) {
+  total += other.total;
+  invalid += other.invalid;
+  undecided += other.undecided;
+  stored += other.stored;
+  unproven += other.unproven;
+  unproven_features += other.unproven_features;
+  verdict = worse(verdict, other.verdict);
+}
+
 void IngestCounts::add(Verdict of_feature) {
   ++total;
   if (of_feature == Verdict::invalid) ++invalid;

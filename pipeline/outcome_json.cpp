@@ -63,7 +63,37 @@ void write_group(JsonText& json, const InspectedGroup& group) {
   json.close(']').close('}');
 }
 
+/// The solids, geometries and groups of a feature, as members of an object.
+void write_parts(JsonText& json, const FeatureOutcome& feature) {
+  json.key("solids").open('[');
+  for (const SolidOutcome& solid : feature.solids) write_solid(json, solid);
+  json.close(']');
+  if (!feature.left_out.empty()) {
+    json.key("leftOut").open('[');
+    for (const formats::GeometryPlace& place : feature.left_out) {
+      json.open('{').key("object").value(place.object_id);
+      json.key("geometry").value(place.geometry).close('}');
+    }
+    json.close(']');
+  }
+  if (!feature.groups.empty()) {
+    json.key("groups").open('[');
+    for (const InspectedGroup& group : feature.groups) write_group(json, group);
+    json.close(']');
+  }
+}
+
 }  // namespace
+
+std::string feature_line(const FeatureOutcome& feature) {
+  JsonText json;
+  json.open('{');
+  if (feature.line > 0) json.key("line").value(feature.line);
+  json.key("id").value(feature.id).key("verdict").value(validate::to_string(feature.verdict));
+  if (feature.verdict != Verdict::valid) write_parts(json, feature);
+  json.close('}');
+  return json.take();
+}
 
 std::string feature_findings_json(const InspectedFeature& feature) {
   JsonText json;
@@ -139,22 +169,8 @@ std::string outcome_json(const IngestOutcome& outcome) {
   for (const FeatureOutcome& feature : outcome.features) {
     json.open('{').key("id").value(feature.id);
     json.key("verdict").value(validate::to_string(feature.verdict));
-    json.key("stored").value(feature.is_stored).key("solids").open('[');
-    for (const SolidOutcome& solid : feature.solids) write_solid(json, solid);
-    json.close(']');
-    if (!feature.left_out.empty()) {
-      json.key("leftOut").open('[');
-      for (const formats::GeometryPlace& place : feature.left_out) {
-        json.open('{').key("object").value(place.object_id);
-        json.key("geometry").value(place.geometry).close('}');
-      }
-      json.close(']');
-    }
-    if (!feature.groups.empty()) {
-      json.key("groups").open('[');
-      for (const InspectedGroup& group : feature.groups) write_group(json, group);
-      json.close(']');
-    }
+    json.key("stored").value(feature.is_stored);
+    write_parts(json, feature);
     json.close('}');
   }
   json.close(']').close('}');

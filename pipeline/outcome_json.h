@@ -23,6 +23,10 @@ std::string measures_json(const geometry::Measures& measures);
 /// feature's "solids".
 std::string outcome_json(const IngestOutcome& outcome);
 
+/// One feature on a line of its own: {"line", "id", "verdict"}, and for a feature that is not valid
+/// its "solids", "leftOut" and "groups" as in outcome_json().
+std::string feature_line(const FeatureOutcome& feature);
+
 /// The defects of a feature that are of none of its own solids alone, as a JSON array: the groups
 /// that are not valid, and the instances of geometry templates that are not. "" without any.
 std::string feature_findings_json(const InspectedFeature& feature);

@@ -119,6 +119,7 @@ struct SolidOutcome {
 struct FeatureOutcome {
   std::string id;
   bool has_own_id = true;  // false: named by IngestOptions::unnamed
+  std::uint64_t line = 0;  // of a sequence, from 1; 0 in other documents
   Verdict verdict = Verdict::undecided;
   std::vector<SolidOutcome> solids;
   std::vector<InspectedGroup> groups;
@@ -241,6 +242,8 @@ struct IngestCounts {
   Verdict verdict = Verdict::valid;     // the worst of all features
 
   void add(Verdict of_feature);
+  /// Adds the numbers of another document.
+  void add(const IngestCounts& other);
 };
 
 struct IngestOutcome : IngestCounts {

@@ -67,6 +67,11 @@ inline constexpr std::string_view kSubmitParameters[] = {
     "f",       "invalid",        "surfaces", "planarity", "planarity-angle",
     "overlap", "exact-overlaps", "proof",    "strict"};
 
+/// The parameters of a file that becomes a job.
+inline constexpr std::string_view kJobParameters[] = {
+    "collection",      "name",    "invalid",        "surfaces", "planarity",
+    "planarity-angle", "overlap", "exact-overlaps", "proof",    "strict"};
+
 /// All routes; the OpenAPI document describes exactly these (a test compares them).
 const std::vector<Route>& routes();
 
@@ -100,6 +105,12 @@ Response post_validate(const RoutedRequest& request);
 Response post_convert(const RoutedRequest& request);
 Response post_encode(const RoutedRequest& request);
 Response post_decode(const RoutedRequest& request);
+Response post_job(const RoutedRequest& request);
+Response get_jobs(const RoutedRequest& request);
+Response get_job(const RoutedRequest& request);
+Response delete_job(const RoutedRequest& request);
+Response get_job_events(const RoutedRequest& request);
+Response get_job_results(const RoutedRequest& request);
 
 /// The answer with a problem that has no further members.
 Response refuse(unsigned status, std::string kind, std::string detail);

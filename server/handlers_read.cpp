@@ -59,7 +59,7 @@ Response get_landing(const RoutedRequest& request) {
   const auto form = answer_form(request);
   if (!form) return refuse_forms();
   const std::string base = base_url(request);
-  const Json links = Json::array(
+  Json links = Json::array(
       {link(base + "/", "self", kJson, "this page"),
        link(base + "/api", "service-desc", kOpenApiType, "the API"),
        link(base + "/conformance", "conformance", kJson, "the standards that the service follows"),
@@ -68,6 +68,10 @@ Response get_landing(const RoutedRequest& request) {
        link(base + "/healthz", "status", kJson, "state of the process"),
        link(base + "/readyz", "status", kJson, "state of the database"),
        link(base + "/metrics", "monitor", "text/plain", "counters for Prometheus")});
+  if (request.service.jobs != nullptr) {
+    links.push_back(link(base + "/jobs", "http://www.opengis.net/def/rel/ogc/1.0/job-list", kJson,
+                         "files that were uploaded to be stored"));
+  }
   const Json json{{"title", kTitle}, {"description", kDescription}, {"links", links}};
   return *form == AnswerForm::html ? html_response(landing_page(json)) : json_response(json);
 }

@@ -8,6 +8,7 @@
 #include "server/features/answer_coding.h"
 #include "server/features/cors.h"
 #include "server/handlers.h"
+#include "server/jobs/handlers_jobs.h"
 #include "server/metrics/metrics.h"
 
 namespace watertight::server {
@@ -200,12 +201,30 @@ const std::vector<Route>& item_routes() {
   return table;
 }
 
+const std::vector<Route>& job_routes() {
+  static const std::vector<Route> table{
+      {"GET", "/jobs", quick, read, get_jobs, {"f", "limit", "after"}},
+      {"POST",
+       "/jobs",
+       small,
+       write,
+       post_job,
+       {std::begin(kJobParameters), std::end(kJobParameters)}},
+      {"GET", "/jobs/{jobId}", quick, read, get_job, {"f"}},
+      {"DELETE", "/jobs/{jobId}", small, write, delete_job, {}},
+      {"GET", "/jobs/{jobId}/results", small, read, get_job_results, {}},
+      {"GET", "/jobs/{jobId}/events", quick, read, get_job_events, {}},
+  };
+  return table;
+}
+
 }  // namespace
 
 const std::vector<Route>& routes() {
   static const std::vector<Route> all = [] {
     std::vector<Route> joined;
-    for (const auto* part : {&general_routes(), &collection_routes(), &item_routes()}) {
+    for (const auto* part :
+         {&general_routes(), &collection_routes(), &item_routes(), &job_routes()}) {
       joined.insert(joined.end(), part->begin(), part->end());
     }
     return joined;
@@ -278,9 +297,30 @@ void count(const Service& service, const AnsweredRequest& answered) {
 
 }  // namespace
 
+namespace {
+
+/// What becomes of the body of a request that the gate has admitted: that of a job goes to a file.
+Admission admit_body(const Service& service, const Request& request, std::string key) {
+  const Route* route = route_of(request);
+  if (route == nullptr || route->handler != post_job) return {std::move(key)};
+  const auto target = parse_target(request.target);
+  Admission admission;
+  const CancelPoll never = [] { return false; };
+  if (auto refusal = refusal_of(*target, *route)) {
+    admission.refusal = std::move(refusal);
+  } else {
+    admission = begin_job({service, request, *target, never}, key);
+  }
+  admission.key = std::move(key);
+  return admission;
+}
+
+}  // namespace
+
 Admission admit(const Service& service, const Request& request) {
-  if (service.gate == nullptr) return {};
-  Admission admission = service.gate->admit(request, scope_of(request));
+  Admission admission;
+  if (service.gate != nullptr) admission = service.gate->admit(request, scope_of(request));
+  if (!admission.refusal) admission = admit_body(service, request, std::move(admission.key));
   if (admission.refusal) {
     admission.refusal =
         with_leave_to_read(service.options.cors_origin, request, *std::move(admission.refusal));

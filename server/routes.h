@@ -19,6 +19,7 @@ namespace watertight::server {
 class Budget;
 class ExportFiles;
 class Gate;
+class Jobs;
 class Metrics;
 class RepresentationCache;
 
@@ -51,6 +52,8 @@ struct Service {
   const Gate* gate = nullptr;
   /// Counts for Prometheus. Null: nothing is counted. Outlives the service.
   Metrics* metrics = nullptr;
+  /// Keeps and does jobs. Null: there are none. Outlives the service.
+  Jobs* jobs = nullptr;
 };
 
 /// Whether a request may be answered, by its key.

@@ -22,6 +22,7 @@
 #include "server/budget.h"
 #include "server/export_files.h"
 #include "server/items/representation_cache.h"
+#include "server/jobs/jobs.h"
 #include "server/metrics/metrics.h"
 
 namespace watertight::server {
@@ -220,6 +221,13 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   Metrics metrics;
   service.metrics = &metrics;
   const LogLine log = [logger](const std::string& line) { logger->info(line); };
+  std::unique_ptr<Jobs> jobs;
+  if (!options.jobs_folder.empty()) {
+    auto read = Jobs::open(options.jobs_folder, service, log);
+    if (!read) return std::move(read).error();
+    jobs = *std::move(read);
+    service.jobs = jobs.get();
+  }
   std::unique_ptr<HttpServer> probes;
   if (options.probes) {
     auto started = HttpServer::start(*options.probes, probe_application(service), log);
@@ -239,6 +247,8 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   const auto drain = static_cast<std::int64_t>(options.server.drain_seconds);
   signals.set_grace(std::chrono::seconds(drain + 30));
   logger->info("event=stopping signal=" + std::to_string(signals.wait()));
+  // The job that runs is interrupted at once; what clients wait for has time.
+  if (jobs) jobs->stop();
   (*server)->stop();
   logger->info("event=stopped");
   return Done{};

@@ -31,6 +31,7 @@ struct ServeOptions {
   bool requires_preconditions = false;         // with every write of features
   std::uint64_t document_memory = 4ULL << 30;  // of the documents that are read whole, bytes
   std::size_t cache_bytes = 64ULL << 20;       // of the answers for items that are kept
+  std::string jobs_folder;                     // "" = no jobs
   std::string connection;                      // libpq connection string or URL of the database
   std::size_t database_connections = 24;
   /// A hostile feature takes some 1.3 GB for its text or 200 MB for its reports at these limits.

@@ -104,7 +104,9 @@ Exit run(const ServeCommand& command) {
   auto opened = open_database(command.store, signals);
   if (!opened) return fail("store", opened.error());
   options.connection = opened->connection;
+  options.jobs_folder = command.jobs_folder;
   if (opened->cluster) {
+    if (options.jobs_folder.empty()) options.jobs_folder = opened->data_directory + "/jobs";
     options.database_health = [&opened] { return opened->cluster->health(); };
   }
   const Status served = server::serve(options, signals);

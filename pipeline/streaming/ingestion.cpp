@@ -139,6 +139,7 @@ Status Ingestion::check_srid(const FeatureOutcome& outcome, std::uint32_t srid) 
 
 Status Ingestion::take(Processed processed) {
   FeatureOutcome& outcome = processed.outcome;
+  outcome.line = processed.place.line;
   if (Status checked = check_id(outcome); !checked) {
     return formats::at_place(std::move(checked).error(), processed.place, outcome.id);
   }

@@ -96,7 +96,7 @@ Response post_convert(const RoutedRequest& request) {
 }
 
 Response post_encode(const RoutedRequest& request) {
-  pipeline::IngestOptions options = ingest_options(request);
+  pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
   const std::string* named = request.target.parameter("invalid");
   const auto policy = pipeline::policy_named(named == nullptr ? "refuse" : *named);
   if (!policy) return to_response(to_problem(policy.error()));

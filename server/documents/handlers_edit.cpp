@@ -156,7 +156,7 @@ Response patch_item(const RoutedRequest& request) {
     return refuse(412, "precondition-failed",
                   "the feature has version " + std::to_string(stored->version));
   }
-  pipeline::IngestOptions options = ingest_options(request);
+  pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
   options.collection = request.target.segments[1];
   options.policy = store::Policy::keep;  // the geometry is what it was
   // Another change since the feature was read is not overwritten.

@@ -62,7 +62,7 @@ Status judge_sequence(const RoutedRequest& request, pipeline::CollectionExport s
 }  // namespace
 
 Response get_report(const RoutedRequest& request) {
-  pipeline::IngestOptions options = ingest_options(request);
+  pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
   if (Status rules = read_rules(request.target, options); !rules) {
     return to_response(to_problem(rules.error()));
   }

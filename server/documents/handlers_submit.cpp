@@ -17,13 +17,6 @@
 namespace watertight::server {
 namespace {
 
-void count(Metrics* metrics, const pipeline::FeatureOutcome& feature) {
-  if (metrics == nullptr) return;
-  for (const pipeline::SolidOutcome& solid : feature.solids) metrics->count(solid.report);
-  for (const pipeline::InspectedGroup& group : feature.groups)
-    metrics->count(group.report.findings);
-}
-
 /// The most features of which the answer has the outcomes, valid or not.
 constexpr std::size_t kMostOutcomes = 1000;
 /// The most bytes of their reports; a feature with longer ones is in the answer if it is the only.
@@ -69,7 +62,9 @@ Response post_items(const RoutedRequest& request) {
   pipeline::OutcomeKeeper keeper(kMostOutcomes, kMostOutcomeBytes);
   pipeline::Ingestion ingestion(*request.service.store, request.service.workers, *options,
                                 [&](pipeline::FeatureOutcome&& feature) -> Status {
-                                  count(request.service.metrics, feature);
+                                  if (Metrics* metrics = request.service.metrics) {
+                                    metrics->count(feature);
+                                  }
                                   keeper.add(std::move(feature));
                                   return Done{};
                                 });
@@ -83,7 +78,7 @@ Response post_items(const RoutedRequest& request) {
 }
 
 Response post_validate(const RoutedRequest& request) {
-  pipeline::IngestOptions options = ingest_options(request);
+  pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
   const Status status = read_rules(request.target, options);
   if (!status) return to_response(to_problem(status.error()));
   const auto kind = report_kind(request.request.header("accept"));

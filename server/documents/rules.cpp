@@ -33,13 +33,13 @@ Status read_tolerance(const Target& target, std::string_view name, double limit,
 
 }  // namespace
 
-pipeline::IngestOptions ingest_options(const RoutedRequest& request) {
+pipeline::IngestOptions ingest_options(const Service& service, const CancelPoll& is_cancelled) {
   pipeline::IngestOptions options;
-  options.threads = request.service.options.threads_per_request;
-  options.certify.limits = request.service.options.limits;
-  options.certify.limits.findings = request.service.options.largest_findings;
-  options.certify.ladder.cancel = request.is_cancelled;
-  options.is_cancelled = request.is_cancelled;
+  options.threads = service.options.threads_per_request;
+  options.certify.limits = service.options.limits;
+  options.certify.limits.findings = service.options.largest_findings;
+  options.certify.ladder.cancel = is_cancelled;
+  options.is_cancelled = is_cancelled;
   return options;
 }
 
@@ -78,18 +78,25 @@ Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
   return Done{};
 }
 
-Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request) {
-  pipeline::IngestOptions options = ingest_options(request);
-  options.collection = request.target.segments[1];
-  if (const std::string* named = request.target.parameter("invalid")) {
+Status read_submit_rules(const Target& target, pipeline::IngestOptions& options) {
+  if (const std::string* named = target.parameter("invalid")) {
     const auto invalid = pipeline::policy_named(*named);
     if (!invalid) return invalid.error();
     options.policy = *invalid;
   }
-  if (Status rules = read_rules(request.target, options); !rules) return std::move(rules).error();
-  const auto surfaces = stored_surfaces(request.target);
+  if (Status rules = read_rules(target, options); !rules) return rules;
+  const auto surfaces = stored_surfaces(target);
   if (!surfaces) return surfaces.error();
   options.surfaces = *surfaces;
+  return Done{};
+}
+
+Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request) {
+  pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
+  options.collection = request.target.segments[1];
+  if (Status rules = read_submit_rules(request.target, options); !rules) {
+    return std::move(rules).error();
+  }
   auto condition = write_condition(request.request);
   if (!condition) return std::move(condition).error();
   options.condition = *std::move(condition);

@@ -11,8 +11,11 @@
 
 namespace watertight::server {
 
-/// The limits, threads and cancel of a request.
-pipeline::IngestOptions ingest_options(const RoutedRequest& request);
+/// The limits of the service, with the threads of a request and a poll.
+pipeline::IngestOptions ingest_options(const Service& service, const CancelPoll& is_cancelled);
+
+/// Reads how a document is stored: policy, rules, surfaces. Errors: invalid_argument.
+Status read_submit_rules(const Target& target, pipeline::IngestOptions& options);
 
 /// The options of a request that stores features: collection, policy, rules, surfaces, condition.
 /// Errors: invalid_argument.

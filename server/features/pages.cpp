@@ -22,6 +22,7 @@ constexpr std::string_view kFromTop = "";
 constexpr std::string_view kFromCollection = "../";
 constexpr std::string_view kFromItems = "../../";
 constexpr std::string_view kFromItem = "../../../";
+constexpr std::string_view kFromJob = "../";
 
 /// The head of a page. The script and the style are files of the service itself (web/), and the
 /// page may load nothing from elsewhere; compressed tiles are unpacked by WebAssembly.
@@ -156,6 +157,15 @@ std::string item_row(const std::string& address, const Json& feature,
     out.append(value == properties.end() ? "<td></td>" : cell(*value));
   }
   return out.append("</tr>\n");
+}
+
+std::string job_row(const Json& job) {
+  const std::string self = link_named(job, "self");
+  const std::string name = job.value("name", job["jobID"].get<std::string>());
+  std::string out = "<tr><td>";
+  out.append(anchor(self, name)).append("</td>").append(cell(job["status"]));
+  out.append(cell(job["collection"])).append(cell(job["counts"]["stored"]));
+  return out.append(cell(job["created"])).append("</tr>\n");
 }
 
 }  // namespace
@@ -298,6 +308,42 @@ std::string item_page(const std::string& collection, const Json& feature) {
   return page(feature["id"].get<std::string>(), kFromItem,
               {{"../..", "Collections"}, {"..", collection}, {"../items", "Features"}},
               body + "</ul>\n");
+}
+
+std::string jobs_page(const Json& jobs) {
+  const std::vector<std::pair<std::string, std::string>> path = {{"./", "Watertight"}};
+  if (jobs["jobs"].empty()) {
+    return page("Jobs", kFromTop, path,
+                "<p>There is no job. A file that is longer than a page can show, or an archive, "
+                "becomes one when it is dropped on the first page.</p>\n");
+  }
+  std::string body = "<table>\n<tr>" + heading("Job") + heading("Status") + heading("Collection") +
+                     heading("Features stored", true) + heading("Made") + "</tr>\n";
+  for (const Json& job : jobs["jobs"]) body += job_row(job);
+  body += "</table>\n";
+  const std::string next = link_named(jobs, "next");
+  if (!next.empty()) body.append("<p>").append(anchor(next, "Older jobs")).append("</p>\n");
+  return page("Jobs", kFromTop, path, body);
+}
+
+std::string job_page(const Json& job) {
+  const bool is_over = job.contains("finished");
+  std::string body = is_over ? "" : view("job");
+  body += "<table>\n";
+  for (const char* name :
+       {"status", "message", "collection", "bytes", "created", "started", "finished"}) {
+    if (job.contains(name)) body += fact(name, job[name]);
+  }
+  for (const auto& [name, value] : job["counts"].items()) body += fact(name, value);
+  body += "</table>\n<ul>\n";
+  for (const Json& item : job["links"]) {
+    if (item["rel"] == "self" || item["rel"] == "monitor") continue;
+    body.append("<li>").append(
+        anchor(item["href"].get<std::string>(), item["title"].get<std::string>()));
+    body += "</li>\n";
+  }
+  return page("Job " + job.value("name", job["jobID"].get<std::string>()), kFromJob,
+              {{"../", "Watertight"}, {"../jobs", "Jobs"}}, body + "</ul>\n");
 }
 
 }  // namespace watertight::server

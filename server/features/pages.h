@@ -35,4 +35,8 @@ std::string collection_page(const Json& collection);
 std::string items_page(const std::string& collection, const Json& items);
 std::string item_page(const std::string& collection, const Json& feature);
 
+/// The pages of the list of jobs and of one job.
+std::string jobs_page(const Json& jobs);
+std::string job_page(const Json& job);
+
 }  // namespace watertight::server

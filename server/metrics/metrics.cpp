@@ -46,6 +46,8 @@ class Metrics::Families {
                "Solids whose tetrahedralization was accepted, by the rung that made it");
   prometheus::Family<prometheus::Counter>& findings = counters(
       registry, "watertight_findings_total", "Findings that requests were answered, by code");
+  prometheus::Family<prometheus::Counter>& jobs =
+      counters(registry, "watertight_jobs_total", "Jobs that are over, by state");
   prometheus::Gauge& is_ready = prometheus::BuildGauge()
                                     .Name("watertight_database_ready")
                                     .Help("1 if the database can be used, else 0")
@@ -85,6 +87,15 @@ void Metrics::count(const std::vector<Finding>& findings) {
   for (const Finding& finding : findings) {
     families_->findings.Add({{"code", std::to_string(finding.code)}}).Increment();
   }
+}
+
+void Metrics::count(const pipeline::FeatureOutcome& feature) {
+  for (const pipeline::SolidOutcome& solid : feature.solids) count(solid.report);
+  for (const pipeline::InspectedGroup& group : feature.groups) count(group.report.findings);
+}
+
+void Metrics::count_job(std::string_view state) {
+  families_->jobs.Add({{"status", std::string(state)}}).Increment();
 }
 
 std::string Metrics::text(bool is_ready) {

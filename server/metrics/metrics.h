@@ -26,6 +26,10 @@ class Metrics {
   void count(const AnsweredRequest& request, std::string_view path);
   /// Counts the verdict, the rung and the findings of a solid that a request had judged.
   void count(const Report& report);
+  /// The same for all solids of a feature, and the findings between them.
+  void count(const pipeline::FeatureOutcome& feature);
+  /// Counts a job that is over, under the word for its state.
+  void count_job(std::string_view state);
   /// Counts the findings between solids.
   void count(const std::vector<Finding>& findings);
 

@@ -7,12 +7,14 @@ import {element} from './page.js';
 import {showCity} from './views/city.js';
 import {showFilter} from './views/filter.js';
 import {showItem} from './views/item.js';
+import {showJob} from './views/job.js';
 import {showUpload} from './views/upload.js';
 
 const kViews = {
   city: showCity,
   filter: showFilter,
   item: showItem,
+  job: showJob,
   upload: showUpload
 };
 

@@ -65,8 +65,9 @@ const mostlyFitting = (schema) =>
 /// Ids of a collection that there is, that there is not, and texts that are none. What changes a
 /// collection gets another than "town".
 function pathValue(name, changes) {
-  const known =
-      name === 'collectionId' ? [changes ? 'scrap' : 'town', 'nowhere'] : [...ids, 'nothing'];
+  const known = name === 'collectionId' ? [changes ? 'scrap' : 'town', 'nowhere'] :
+      name === 'jobId'                  ? [...jobs, 'nothing'] :
+                                          [...ids, 'nothing'];
   return fc.oneof(
       {weight: 6, arbitrary: fc.constantFrom(...known)},
       {weight: 1, arbitrary: anyText.filter((text) => !['', '.', '..', 'town'].includes(text))});
@@ -90,8 +91,10 @@ function requestsOf(path, method, operation) {
     if (parameter.in === 'path') parts.values[parameter.name] = pathValue(parameter.name, changes);
     if (parameter.in === 'query') {
       // One of so many requests is without the parameter.
-      parts.query[parameter.name] = fc.option(
-          mostlyFitting(parameter.schema), {nil: undefined, freq: parameter.required ? 20 : 2});
+      const value = parameter.name === 'collection' ? fc.constantFrom('scrap', 'scrap', 'a b') :
+                                                      mostlyFitting(parameter.schema);
+      parts.query[parameter.name] =
+          fc.option(value, {nil: undefined, freq: parameter.required ? 20 : 2});
     }
     if (parameter.in === 'header' && parameter.name !== 'Content-Encoding') {
       parts.headers[parameter.name] =
@@ -170,6 +173,11 @@ const type = {
   'Content-Type': 'application/city+json-seq'
 };
 await send('post', '/collections/town/items?invalid=keep', type, document);
+const jobs = [];
+for (let i = 0; i < 5; ++i) {
+  const made = await send('post', '/jobs?collection=scrap&invalid=keep', type, document);
+  jobs.push(JSON.parse(made.body).jobID);
+}
 let failed = 0;
 for (const [path, methods] of Object.entries(api.paths)) {
   for (const [method, operation] of Object.entries(methods)) {

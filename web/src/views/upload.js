@@ -5,6 +5,7 @@ import {findingsOfReport} from '../documents/findings.js';
 import {ask, counted, element, grouped, kService, save, size} from '../page.js';
 
 import {ModelView} from './model_view.js';
+import {isLong, kArchives, storeForm, storeLongForm, upload} from './store_form.js';
 
 const kTypes = new Map([
   ['.jsonl', 'application/city+json-seq'], ['.json', 'application/city+json'],
@@ -21,38 +22,12 @@ const kAnyType = 'application/octet-stream';  // the service looks at the first 
 const typeOf = (name) =>
     kTypes.get(name.toLowerCase().match(/\.[a-z]+$/)?.[0] ?? '') ?? 'application/octet-stream';
 
-/// Sends a file and says how much is sent; the report.
-function judged(address, file, onProgress) {
-  return new Promise((resolve, reject) => {
-    const request = new XMLHttpRequest();
-    request.open('POST', address);
-    request.setRequestHeader('Content-Type', typeOf(file.name));
-    request.setRequestHeader('Accept', 'application/json');
-    request.upload.onprogress = (event) => onProgress(event.loaded, event.total);
-    request.onerror = () => reject(new Error('the service does not answer'));
-    request.onload = () => {
-      let answer;
-      try {
-        answer = JSON.parse(request.responseText);
-      } catch {
-        answer = {};
-      }
-      if (request.status === 200) {
-        resolve(answer);
-      } else {
-        reject(new Error(answer.detail ?? `the service answers ${request.status}`));
-      }
-    };
-    request.send(file);
-  });
-}
-
 class Upload {
   constructor(container) {
     this.input = element('input', {
       type: 'file',
       id: 'file',
-      accept: [...kTypes.keys()].join(','),
+      accept: [...kTypes.keys(), ...kArchives].join(','),
       onchange: () => this.take(this.input.files[0])
     });
     this.state = element('p', {role: 'status'});
@@ -83,11 +58,18 @@ class Upload {
     if (!file) return;
     this.result.replaceChildren();
     this.stored = null;  // the document as a city model
+    if (isLong(file)) {
+      this.state.textContent = `${file.name} (${size(file.size)}) is too long to be shown here. ` +
+          'It can be stored, and judged meanwhile.';
+      this.result.replaceChildren(storeLongForm(file));
+      return;
+    }
     this.progress.hidden = false;
     this.progress.value = 0;
     this.state.textContent = `Sending ${file.name} (${size(file.size)})`;
     try {
-      const report = await judged(kService + 'validate', file, (sent, all) => {
+      const fields = {'Content-Type': typeOf(file.name), Accept: 'application/json'};
+      const report = await upload(`${kService}validate`, file, fields, (sent, all) => {
         this.progress.value = sent / all;
         if (sent === all) {
           this.progress.removeAttribute('value');
@@ -106,7 +88,7 @@ class Upload {
     this.state.textContent = `${file.name} is ${report.verdict}: ${counted(solids, 'solid')}.`;
     const view = element('div');
     this.result.replaceChildren(
-        view, this.#downloads(file), this.#counts(report), this.#storing(file));
+        view, this.#downloads(file), this.#counts(report), storeForm(file, () => this.stored));
     const findings = findingsOfReport(report);
     let model;
     try {
@@ -164,45 +146,6 @@ class Upload {
             },
             text));
     return element('p', {class: 'tools'}, ...buttons);
-  }
-
-  /// The form that stores the file in a collection.
-  #storing(file) {
-    const suggestion = file.name.replace(/\..*$/, '').replace(/[^A-Za-z0-9_.-]/g, '-').slice(0, 64);
-    const id = element('input', {
-      id: 'collection',
-      required: true,
-      pattern: '[A-Za-z0-9_.\\-]{1,64}',
-      value: suggestion,
-      title: 'letters, digits, and _ . -'
-    });
-    const policy = element(
-        'select', {id: 'policy'},
-        element('option', {value: 'keep'}, 'keep it, marked as not proven'),
-        element('option', {value: 'skip'}, 'leave it out'),
-        element('option', {value: 'refuse'}, 'store nothing'));
-    const said = element('p', {role: 'status'});
-    const store = async (event) => {
-      event.preventDefault();
-      said.textContent = 'Storing';
-      const address = `${kService}collections/${encodeURIComponent(id.value)}`;
-      try {
-        const answer = await ask(
-            `${address}/items?invalid=${policy.value}`,
-            {method: 'POST', body: this.stored ?? file, headers: {'Content-Type': kAnyType}});
-        const outcome = await answer.json();
-        said.replaceChildren(
-            `${counted(outcome.stored, 'feature')} stored in `,
-            element('a', {href: address}, id.value));
-      } catch (error) {
-        said.textContent = error.message;
-      }
-    };
-    return element(
-        'details', {class: 'store'}, element('summary', {}, 'Store this file'),
-        element('form', {onsubmit: store}, element('label', {for: 'collection'
-                }, 'Collection '), id, element('label', {for: 'policy'
-                }, ' What is not valid: '), policy, element('button', {}, 'Store')), said);
   }
 }
 

@@ -107,6 +107,12 @@ class ReadinessMonitor {
   std::thread thread_;
 };
 
+std::string url_of(const ServerOptions& options, std::uint16_t port) {
+  const bool is_v6 = options.address.find(':') != std::string::npos;
+  return "http://" + (is_v6 ? "[" + options.address + "]" : options.address) + ":" +
+         std::to_string(port);
+}
+
 /// The gate of the options; null if nobody needs a key. Errors: those of Gate::open().
 Result<std::unique_ptr<Gate>> open_gate(const ServeOptions& options) {
   if (options.keys_file.empty()) return std::unique_ptr<Gate>();
@@ -118,6 +124,22 @@ Result<std::unique_ptr<Gate>> open_gate(const ServeOptions& options) {
   return error;
 }
 
+/// The jobs in a folder; null without one. Errors: those of Jobs::open().
+Result<std::unique_ptr<Jobs>> open_jobs(const std::string& folder, const Service& service,
+                                        const LogLine& log) {
+  if (folder.empty()) return std::unique_ptr<Jobs>();
+  return Jobs::open(folder, service, log);
+}
+
+/// The probes on an address of their own; null without one. Errors: those of HttpServer::start().
+Result<std::unique_ptr<HttpServer>> start_probes(const ServeOptions& options,
+                                                 const Service& service, const LogLine& log) {
+  if (!options.probes) return std::unique_ptr<HttpServer>();
+  auto probes = HttpServer::start(*options.probes, probe_application(service), log);
+  if (probes) log("event=probes url=" + url_of(*options.probes, (*probes)->port()));
+  return probes;
+}
+
 /// Reads keys that have changed, and says so.
 void log_refresh(Gate& gate, spdlog::logger& logger) {
   const auto refreshed = gate.refresh();
@@ -125,12 +147,6 @@ void log_refresh(Gate& gate, spdlog::logger& logger) {
   if (!refreshed) {
     logger.error("event=keys-wrong kept=old error=\"" + to_string(refreshed.error()) + "\"");
   }
-}
-
-std::string url_of(const ServerOptions& options, std::uint16_t port) {
-  const bool is_v6 = options.address.find(':') != std::string::npos;
-  return "http://" + (is_v6 ? "[" + options.address + "]" : options.address) + ":" +
-         std::to_string(port);
 }
 
 }  // namespace
@@ -221,20 +237,11 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   Metrics metrics;
   service.metrics = &metrics;
   const LogLine log = [logger](const std::string& line) { logger->info(line); };
-  std::unique_ptr<Jobs> jobs;
-  if (!options.jobs_folder.empty()) {
-    auto read = Jobs::open(options.jobs_folder, service, log);
-    if (!read) return std::move(read).error();
-    jobs = *std::move(read);
-    service.jobs = jobs.get();
-  }
-  std::unique_ptr<HttpServer> probes;
-  if (options.probes) {
-    auto started = HttpServer::start(*options.probes, probe_application(service), log);
-    if (!started) return std::move(started).error();
-    probes = *std::move(started);
-    logger->info("event=probes url=" + url_of(*options.probes, probes->port()));
-  }
+  const auto jobs = open_jobs(options.jobs_folder, service, log);
+  if (!jobs) return jobs.error();
+  service.jobs = jobs->get();
+  const auto probes = start_probes(options, service, log);
+  if (!probes) return probes.error();
   Application application = make_application(service);
   application.interrupt = [&store] { (*store)->interrupt(); };
   auto server = HttpServer::start(options.server, std::move(application), log);
@@ -248,7 +255,7 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   signals.set_grace(std::chrono::seconds(drain + 30));
   logger->info("event=stopping signal=" + std::to_string(signals.wait()));
   // The job that runs is interrupted at once; what clients wait for has time.
-  if (jobs) jobs->stop();
+  if (*jobs) (*jobs)->stop();
   (*server)->stop();
   logger->info("event=stopped");
   return Done{};

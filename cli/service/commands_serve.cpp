@@ -48,6 +48,12 @@ Status read_listen(const std::string& text, server::ServerOptions& options) {
   return error == std::errc{} && rest == end ? Status(Done{}) : Status(wrong);
 }
 
+/// Reads the origin whose pages may read; "" for none.
+Status read_origin(const std::string& origin, server::ServeOptions& options) {
+  options.cors_origin = origin;
+  return origin.empty() ? Status(Done{}) : server::check_origin(origin);
+}
+
 }  // namespace
 
 Exit run(const ServeCommand& command) {
@@ -68,6 +74,7 @@ Exit run(const ServeCommand& command) {
   }
   options.keys_file = command.keys_file;
   options.reading_is_public = command.reading_is_public;
+  options.jobs_folder = command.jobs_folder;
   const auto fail = [](const std::string& what, const Error& error) {
     complain(what, error);
     // A service that was stopped before it listened has done what it was told.
@@ -81,12 +88,9 @@ Exit run(const ServeCommand& command) {
     options.base_url = command.base_url;
     while (options.base_url.ends_with('/')) options.base_url.pop_back();
   }
-  if (!command.cors.empty()) {
-    if (const Status checked = server::check_origin(command.cors); !checked) {
-      complain("--cors", checked.error());
-      return Exit::error;
-    }
-    options.cors_origin = command.cors;
+  if (const Status checked = read_origin(command.cors, options); !checked) {
+    complain("--cors", checked.error());
+    return Exit::error;
   }
   limit_addresses(command, options.server);
   options.requires_preconditions = command.requires_preconditions;
@@ -104,7 +108,6 @@ Exit run(const ServeCommand& command) {
   auto opened = open_database(command.store, signals);
   if (!opened) return fail("store", opened.error());
   options.connection = opened->connection;
-  options.jobs_folder = command.jobs_folder;
   if (opened->cluster) {
     if (options.jobs_folder.empty()) options.jobs_folder = opened->data_directory + "/jobs";
     options.database_health = [&opened] { return opened->cluster->health(); };

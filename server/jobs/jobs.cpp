@@ -223,6 +223,7 @@ Result<JobView> Jobs::dismiss(const std::string& id) {
     records_.erase(found);
     lock.unlock();
     folder_of(id).remove();
+    record->view.job.state = JobState::dismissed;
     record->view.job.message = "removed with its results";
     return record->view;
   }

@@ -162,7 +162,7 @@ function breach(pointer, operation, answer) {
   const type = Object.keys(content).find((known) => known.split(';')[0] === answer.type);
   if (type === undefined)
     return `${answer.status} has the type ${answer.type}, not ${Object.keys(content)}`;
-  if (!/json$/.test(answer.type) || !content[type].schema) return undefined;
+  if (!/[/+]json$/.test(answer.type) || !content[type].schema) return undefined;
   const validate = validatorOf(`${place}/content/${escaped(type)}/schema`);
   if (validate(JSON.parse(answer.body))) return undefined;
   return `${answer.status} ${type}: ${ajv.errorsText(validate.errors)}: ${
@@ -195,6 +195,7 @@ for (const [path, methods] of Object.entries(api.paths)) {
     console.log(`${result.failed ? 'WRONG' : 'ok'}: ${method.toUpperCase()} ${path} (${counts})`);
     if (!result.failed) continue;
     ++failed;
+    console.log(result.errorInstance?.message);
     console.log(fc.defaultReportMessage(result));
   }
 }

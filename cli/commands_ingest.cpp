@@ -72,6 +72,7 @@ class IngestRun {
   files::EarlyFiles early_;
   std::optional<RejectedFiles> rejected_;
   pipeline::IngestCounts counts_;  // of all files
+  pipeline::StageTimes stages_;
   FilesOfFeatures files_;
   Summary summary_;
 };
@@ -110,6 +111,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   std::optional<std::uint64_t> whole = input->bytes;
   std::optional<std::size_t> count;
   pipeline::IngestOptions options = options_;
+  options.stages = &stages_;
   options.unnamed = std::filesystem::path(input->name.empty() ? name : input->name).stem().string();
   pipeline::Ingestion ingestion(
       store, &*workers_, options,
@@ -245,6 +247,7 @@ Exit IngestRun::run() {
       exit = Exit::error;
     }
   }
+  summary_.add(stages_);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::string text =

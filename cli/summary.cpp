@@ -174,6 +174,10 @@ void Summary::add(const std::vector<pipeline::InspectedGroup>& groups) {
   }
 }
 
+void Summary::add(const pipeline::StageTimes& times) {
+  for (const pipeline::Stage stage : pipeline::kStages) stages_[stage] += times.seconds(stage);
+}
+
 std::string Summary::headline() const {
   std::string text;
   const std::uint64_t checked = features_ - empty_features_;
@@ -267,7 +271,12 @@ std::string Summary::table(double seconds) const {
     text += row("ratio",
                 decimals(static_cast<double>(plain_bytes_) / static_cast<double>(blob_bytes_), 2));
   }
-  return text + row("seconds", decimals(seconds, 2));
+  text += row("seconds", decimals(seconds, 2));
+  for (const auto& [stage, time] : stages_) {
+    std::string name = "  ";
+    text += row(name.append(to_string(stage)).append(", all threads"), decimals(time, 2));
+  }
+  return text;
 }
 
 std::string Summary::json(double seconds) const {
@@ -288,6 +297,9 @@ std::string Summary::json(double seconds) const {
     json["validByRung"][std::string(delaunay::to_string(rung))] = count;
   }
   json["seconds"] = seconds;
+  for (const auto& [stage, time] : stages_) {
+    json["secondsByStage"][std::string(to_string(stage))] = time;
+  }
   return json.dump();
 }
 

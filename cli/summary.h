@@ -9,6 +9,7 @@
 #include <string>
 
 #include "pipeline/pipeline.h"
+#include "pipeline/streaming/stage_times.h"
 
 namespace watertight::cli {
 
@@ -41,6 +42,9 @@ class Summary {
   /// Counts a file that could not be opened or read at all.
   void add_unreadable_file();
   void add(const BaselineCounts& counts);
+
+  /// Counts the time of an ingestion by stages.
+  void add(const pipeline::StageTimes& times);
 
   /// The result in a sentence or a few, one on each line.
   std::string headline() const;
@@ -78,6 +82,7 @@ class Summary {
   std::optional<BaselineCounts> baseline_;
   std::uint64_t unreadable_ = 0;  // features and rests of documents that could not be read
   std::uint64_t stored_ = 0;
+  std::map<pipeline::Stage, double> stages_;  // seconds of all threads
   std::uint64_t file_bytes_ = 0;
   std::uint64_t plain_bytes_ = 0;  // the size of the encoded solids as plain arrays
   std::uint64_t blob_bytes_ = 0;

@@ -12,6 +12,7 @@
 #include "pipeline/indoor/cells.h"
 #include "pipeline/instances.h"
 #include "pipeline/streaming/process.h"
+#include "pipeline/streaming/stage_times.h"
 #include "validate/report_json.h"
 
 namespace watertight::pipeline {
@@ -387,8 +388,12 @@ Result<ProcessedFeature> process(Feature feature, const SharedPart& shared,
                                  TemplateInspector& templates, CellInspector& cells) {
   ProcessedFeature processed;
   feature.surfaces.clear();  // they stay in the skeleton; validate_stream() reports on them
-  InspectedFeature inspected =
-      inspect(std::move(feature), workers, options.certify, options.groups, &templates, &cells);
+  InspectedFeature inspected = [&] {
+    const StageTimer timer(options.stages, Stage::judging);
+    return inspect(std::move(feature), workers, options.certify, options.groups, &templates,
+                   &cells);
+  }();
+  const StageTimer timer(options.stages, Stage::encoding);
   processed.outcome.id = inspected.feature.id;
   processed.outcome.verdict = inspected.verdict();
   const bool is_valid = processed.outcome.verdict == Verdict::valid;

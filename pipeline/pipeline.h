@@ -86,6 +86,7 @@ Verdict worse(Verdict a, Verdict b);
 
 class TemplateInspector;
 class CellInspector;
+class StageTimes;
 
 /// The options for groups, with the limit of findings of `options`, and with its poll if they have
 /// none.
@@ -166,7 +167,8 @@ struct IngestOptions : FeatureEncoding {
   std::size_t batch_bytes = std::size_t{8} << 20U;
   std::size_t threads = 1;
   CancelPoll is_cancelled = {};
-  Progress progress = {};  // of encode_document()
+  Progress progress = {};        // of encode_document()
+  StageTimes* stages = nullptr;  // gets the time of each stage; null: nobody counts it
 };
 
 /// A feature with its solids encoded: those that are proven as blobs, the others in the skeleton.

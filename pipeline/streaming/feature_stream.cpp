@@ -52,13 +52,19 @@ class FeatureStream {
       for (auto found = take_next(); found; found = take_next()) {
         const std::uint64_t bytes = found->text.line.size();
         const formats::FeaturePlace place = found->text.place;
-        Delivery delivery = work_(found->number, place, reader_.read(std::move(found->text)));
+        Result<Feature> feature = read(std::move(found->text));
+        Delivery delivery = work_(found->number, place, std::move(feature));
         put_back(found->number, {bytes, std::move(delivery)});
       }
     } catch (...) {
       stop(Error{ErrorCode::unavailable, "a thread failed"});
       throw;
     }
+  }
+
+  Result<Feature> read(formats::FeatureText text) const {
+    const StageTimer timer(options_.stages, Stage::reading);
+    return reader_.read(std::move(text));
   }
 
   std::optional<Found> take_next();
@@ -94,7 +100,10 @@ std::optional<FeatureStream::Found> FeatureStream::take_next() {
     stop(Error{ErrorCode::cancelled, "stopped before all features were validated"});
     return std::nullopt;
   }
-  auto text = reader_.next();
+  auto text = [this] {
+    const StageTimer timer(options_.stages, Stage::reading);
+    return reader_.next();
+  }();
   if (text && *text) {
     Found found{taken_++, **std::move(text)};
     Passage& passage = passages_[found.number];

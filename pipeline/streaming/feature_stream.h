@@ -9,6 +9,7 @@
 
 #include "base/cancel.h"
 #include "formats/feature_reader.h"
+#include "pipeline/streaming/stage_times.h"
 
 namespace watertight::pipeline {
 
@@ -25,6 +26,7 @@ struct FeatureStreamOptions {
   CancelPoll is_cancelled = {};
   /// Called with the number of bytes read, after each delivery, from one thread at a time.
   std::function<void(std::uint64_t)> progress = {};
+  StageTimes* stages = nullptr;  // IngestOptions::stages
 };
 
 /// Works on all features of a reader; returns their number, unreadable ones included. At most a few

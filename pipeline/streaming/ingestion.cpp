@@ -86,13 +86,14 @@ Status Ingestion::add(formats::FeatureReader& reader) {
     const auto taken =
         std::make_shared<Processed>(Processed{std::move(processed->outcome), place, srid, {}});
     if (processed->encoded) {
+      const StageTimer timer(options_.stages, Stage::packing);
       auto prepared = packer_->prepare(*std::move(processed->encoded));
       if (!prepared) return [error = std::move(prepared).error()]() -> Status { return error; };
       taken->prepared = *std::move(prepared);
     }
     return [this, taken] { return take(std::move(*taken)); };
   };
-  FeatureStreamOptions stream{options_.threads, options_.is_cancelled, {}};
+  FeatureStreamOptions stream{options_.threads, options_.is_cancelled, {}, options_.stages};
   if (progress_) stream.progress = [this](std::uint64_t bytes) { progress_(counts_.total, bytes); };
   const auto count = stream_features(reader, stream, work);
   if (!count) return count.error();
@@ -156,6 +157,7 @@ Status Ingestion::take(Processed processed) {
     record.id = outcome.id;
     counts_.unproven += record.unproven();
     counts_.unproven_features += record.is_proven() ? 0 : 1;
+    const StageTimer timer(options_.stages, Stage::packing);
     if (Status added = packer_->add(*std::move(processed.prepared), spool_); !added) return added;
   }
   return on_feature_(std::move(outcome));
@@ -163,11 +165,15 @@ Status Ingestion::take(Processed processed) {
 
 Result<IngestCounts> Ingestion::finish() {
   if (is_refused() || !packer_) return counts_;
-  if (Status added = packer_->finish(spool_); !added) return std::move(added).error();
+  {
+    const StageTimer timer(options_.stages, Stage::packing);
+    if (Status added = packer_->finish(spool_); !added) return std::move(added).error();
+  }
   if (spool_.size() == 0) return counts_;
   if (options_.is_cancelled && options_.is_cancelled()) {
     return Error{ErrorCode::cancelled, "stopped before the features were stored"};
   }
+  const StageTimer timer(options_.stages, Stage::storing);
   // A store can join small writes of several clients.
   auto versions = spool_.is_one_batch() ? store_.put(spool_.open_batch(), options_.condition)
                                         : store_.put_all(spool_, options_.condition);

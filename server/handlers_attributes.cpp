@@ -83,7 +83,11 @@ Response get_queryables(const RoutedRequest& request) {
             {"$id", base_url(request) + "/collections/" + percent_encode(id) + "/queryables"},
             {"type", "object"},
             {"title", id},
-            {"properties", Json::object()},
+            {"properties",
+             {{"geometry",
+               {{"title", "the box of a feature, for S_INTERSECTS in a filter"},
+                {"format", "geometry-any"},
+                {"x-ogc-role", "primary-geometry"}}}}},
             {"additionalProperties", false}};
   for (const store::ChosenAttribute& attribute : *chosen) {
     if (!attribute.is_complete()) continue;

@@ -23,10 +23,21 @@ constexpr std::string_view kUnknownCrs = "http://www.opengis.net/def/nil/OGC/0/u
 constexpr std::string_view kOpenApiType = "application/vnd.oai.openapi+json;version=3.0";
 constexpr std::string_view kSpecifications = "http://www.opengis.net/spec/";
 constexpr std::string_view kConformance[] = {
-    "ogcapi-common-1/1.0/conf/core",   "ogcapi-common-2/1.0/conf/collections",
-    "ogcapi-features-1/1.0/conf/core", "ogcapi-features-1/1.0/conf/geojson",
-    "ogcapi-features-1/1.0/conf/html", "ogcapi-features-1/1.0/conf/oas30",
-    "ogcapi-features-2/1.0/conf/crs"};
+    "ogcapi-common-1/1.0/conf/core",
+    "ogcapi-common-2/1.0/conf/collections",
+    "ogcapi-features-1/1.0/conf/core",
+    "ogcapi-features-1/1.0/conf/geojson",
+    "ogcapi-features-1/1.0/conf/html",
+    "ogcapi-features-1/1.0/conf/oas30",
+    "ogcapi-features-2/1.0/conf/crs",
+    "ogcapi-features-3/1.0/conf/queryables",
+    "ogcapi-features-3/1.0/conf/queryables-query-parameters",
+    "ogcapi-features-3/1.0/conf/filter",
+    "ogcapi-features-3/1.0/conf/features-filter",
+    "cql2/1.0/conf/cql2-text",
+    "cql2/1.0/conf/cql2-json",
+    "cql2/1.0/conf/basic-cql2",
+    "cql2/1.0/conf/advanced-comparison-operators"};
 constexpr std::string_view kTitle = "Watertight";
 constexpr std::string_view kDescription = "Validates, stores and compresses 3D solids";
 

@@ -43,7 +43,7 @@ struct AttributeChange {
   std::vector<std::string> add, remove;
 };
 
-enum class Comparison : std::uint8_t { equal, less, at_most, greater, at_least };
+enum class Comparison : std::uint8_t { equal, different, less, at_most, greater, at_least };
 
 /// Holds for a feature if one of its objects has a value of the attribute that compares so with one
 /// of `values`, of the same type. Numbers compare exactly, texts by their bytes.

@@ -264,6 +264,9 @@ class PostgresStore final : public SolidStore {
     }
     if (!check_collection_id(query.collection)) return no_such_collection();
     if (query.where.size() > kMostConditions) return too_many_conditions();
+    if (query.filter) {
+      if (Status checked = check_filter(*query.filter); !checked) return std::move(checked).error();
+    }
     if (!query.after.empty() && !is_possible_id(query.after)) {
       return Error{ErrorCode::invalid_argument, "a page cannot start after an impossible id"};
     }

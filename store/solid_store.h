@@ -22,13 +22,9 @@
 #include "base/shared_text.h"
 #include "packing/text_dictionary.h"
 #include "store/attributes.h"
+#include "store/filter.h"
 
 namespace watertight::store {
-
-struct StoredBox {
-  std::array<double, 3> min{};
-  std::array<double, 3> max{};
-};
 
 /// Ok for an id that a collection can have: 1 to 64 of A-Z a-z 0-9 _ . -, and neither "." nor "..",
 /// which no URL can name. Errors: invalid_argument.
@@ -135,6 +131,8 @@ struct FeatureQuery {
   std::optional<bool> is_proven = std::nullopt;
   /// Conditions that must all hold, at most kMostConditions, on attributes that are complete.
   std::vector<AttributeCondition> where = {};
+  /// A condition that must hold besides, on attributes that are complete.
+  std::optional<Filter> filter = std::nullopt;
 };
 
 /// The facts about a feature that lists show.

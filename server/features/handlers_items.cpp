@@ -9,6 +9,7 @@
 
 #include "pipeline/stored/attributes.h"
 #include "server/features/feature_text.h"
+#include "server/features/filters.h"
 #include "server/features/links.h"
 #include "server/features/pages.h"
 #include "server/items/preconditions.h"
@@ -287,11 +288,18 @@ Result<ListRequest> list_request(const RoutedRequest& request, const PageType& t
   if (!is_proven) return is_proven.error();
   auto where = conditions_of_request(target);
   if (!where) return std::move(where).error();
+  auto filter = filter_of_request(target, *collection);
+  if (!filter) return std::move(filter).error();
   const std::string* after = target.parameter("after");
   const double share = box->box && collection->box ? share_of(*collection->box, *box->box) : 0;
-  store::FeatureQuery query{collection->id,   *limit, after == nullptr ? std::string() : *after,
-                            box->box,         share,  *is_proven,
-                            *std::move(where)};
+  store::FeatureQuery query{collection->id,
+                            *limit,
+                            after == nullptr ? std::string() : *after,
+                            box->box,
+                            share,
+                            *is_proven,
+                            *std::move(where),
+                            *std::move(filter)};
   return ListRequest{*std::move(collection), *std::move(form), box->is_empty, std::move(query)};
 }
 
@@ -329,7 +337,7 @@ Response get_items(const RoutedRequest& request) {
   work->path = path_without_after(request, work->base);
   work->after = query.after;
   if (wanted->is_empty) return page_of(work, request.is_cancelled);
-  if (!query.box && query.where.empty()) {
+  if (!query.box && query.where.empty() && !query.filter) {
     work->matched = matched(wanted->collection, query.is_proven);
   }
   auto page = request.service.store->list(query);

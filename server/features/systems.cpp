@@ -178,24 +178,30 @@ std::optional<store::StoredBox> box_in_crs84(std::uint32_t srid, const store::St
                           {bounds->max[0], bounds->max[1], box.max[2]}};
 }
 
+Result<BoxChoice> choice_of_box(PlaceSystem system, const store::StoredBox& box,
+                                const store::StoredCollection& collection) {
+  if (system != PlaceSystem::storage && collection.srid == 0) {
+    return Error{ErrorCode::invalid_argument, "the collection states no CRS: a box needs the CRS " +
+                                                  crs_uri(0) + " (bbox-crs, filter-crs)"};
+  }
+  if (system != PlaceSystem::storage) return choice_in_system(system, box, collection);
+  store::StoredBox turned = box;
+  if (projection::is_north_first(collection.srid)) {
+    std::swap(turned.min[0], turned.min[1]);
+    std::swap(turned.max[0], turned.max[1]);
+  }
+  return BoxChoice{.is_empty = false, .box = turned};
+}
+
 Result<BoxChoice> box_of_request(const Target& target, const store::StoredCollection& collection) {
   const auto system = system_of_request(target, "bbox-crs", collection.srid);
   if (!system) return system.error();
   const std::string* text = target.parameter("bbox");
   if (text == nullptr) return BoxChoice{};
-  if (*system != PlaceSystem::storage && collection.srid == 0) {
-    return Error{ErrorCode::invalid_argument,
-                 "the collection states no CRS: bbox needs bbox-crs=" + crs_uri(0)};
-  }
   const bool can_wrap = *system == PlaceSystem::crs84 || *system == PlaceSystem::crs84h;
   auto box = parse_box(*text, can_wrap);
   if (!box) return std::move(box).error();
-  if (*system != PlaceSystem::storage) return choice_in_system(*system, *box, collection);
-  if (projection::is_north_first(collection.srid)) {
-    std::swap(box->min[0], box->min[1]);
-    std::swap(box->max[0], box->max[1]);
-  }
-  return BoxChoice{.is_empty = false, .box = *box};
+  return choice_of_box(*system, *box, collection);
 }
 
 }  // namespace watertight::server

@@ -50,7 +50,12 @@ struct BoxChoice {
   std::optional<store::StoredBox> box;  // in the storage CRS as stored; nothing: all features match
 };
 
-/// Errors: invalid_argument; unsupported for a box that is not in the area of the storage CRS.
+/// The part of a collection that a box in another system selects. Errors: invalid_argument for a
+/// collection without CRS; unsupported for a box that is not in the area of the storage CRS.
+Result<BoxChoice> choice_of_box(PlaceSystem system, const store::StoredBox& box,
+                                const store::StoredCollection& collection);
+
+/// Errors: invalid_argument; those of choice_of_box().
 Result<BoxChoice> box_of_request(const Target& target, const store::StoredCollection& collection);
 
 }  // namespace watertight::server

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "store/rows/attribute_values.h"
+#include "store/rows/filter_rows.h"
 
 namespace watertight::store {
 namespace {
@@ -64,22 +65,6 @@ struct ValueColumns {
     *this = {};
   }
 };
-
-const char* sign_of(Comparison comparison) {
-  switch (comparison) {
-    case Comparison::equal:
-      return " = ";
-    case Comparison::less:
-      return " < ";
-    case Comparison::at_most:
-      return " <= ";
-    case Comparison::greater:
-      return " > ";
-    case Comparison::at_least:
-      return " >= ";
-  }
-  return " = ";
-}
 
 /// A value that the store keeps has no exponent beyond kLargestExponent.
 bool is_small_exponent(std::string_view number) {
@@ -155,51 +140,38 @@ Status write_attributes(DatabaseSession& connection, std::string_view collection
 
 std::string attribute_clauses(std::span<const AttributeCondition> conditions, int next,
                               Parameters& parameters) {
-  using Type = AttributeValue::Type;
   std::string clauses;
   for (const AttributeCondition& condition : conditions) {
-    clauses.append(
-        " AND EXISTS (SELECT FROM watertight.attribute_value v"
-        " WHERE v.feature = hashtextextended(f.id, 0) AND v.attribute ="
-        " (SELECT n.key FROM watertight.attribute_name n JOIN watertight.collection o"
-        " ON o.key = n.collection WHERE o.name = $1 AND n.is_complete AND n.name = $");
-    clauses.append(std::to_string(next++)).append(") AND (false");
-    parameters.text(condition.name);
-    for (const AttributeValue& value : condition.values) {
-      if (!is_kept(value)) continue;  // no feature has it
-      const std::string number = std::to_string(next++);
-      clauses.append(value.type == Type::number ? " OR v.number"
-                     : value.type == Type::text ? " OR v.text"
-                                                : " OR v.truth");
-      clauses.append(sign_of(condition.comparison));
-      clauses.append(value.type == Type::text ? "watertight.attribute_text($" : "($");
-      clauses.append(number).append(value.type == Type::number  ? "::numeric)"
-                                    : value.type == Type::truth ? "::boolean)"
-                                                                : ")");
-      parameters.text(value.text);
-    }
-    clauses.append("))");
+    const Filter filter{
+        Filter::Kind::compare, {}, condition.name, condition.comparison, condition.values};
+    clauses.append(" AND ").append(filter_clause(filter, next, parameters));
   }
   return clauses;
 }
 
-Status check_conditions(DatabaseSession& connection, const std::string& collection,
-                        std::span<const AttributeCondition> conditions) {
-  if (conditions.empty()) return Done{};
+Status check_names(DatabaseSession& connection, const std::string& collection,
+                   std::span<const std::string> names) {
+  if (names.empty()) return Done{};
   const auto chosen = read_attributes(connection, collection);
   if (!chosen) return chosen.error();
-  for (const AttributeCondition& condition : conditions) {
-    const auto found =
-        std::find_if(chosen->begin(), chosen->end(),
-                     [&](const ChosenAttribute& one) { return one.name == condition.name; });
-    if (found == chosen->end()) return not_chosen(collection, condition.name);
+  for (const std::string& name : names) {
+    const auto found = std::find_if(chosen->begin(), chosen->end(),
+                                    [&](const ChosenAttribute& one) { return one.name == name; });
+    if (found == chosen->end()) return not_chosen(collection, name);
     if (found->is_complete()) continue;
-    return Error{ErrorCode::invalid_argument, "the attribute '" + condition.name +
-                                                  "' of collection '" + collection +
+    return Error{ErrorCode::invalid_argument, "the attribute '" + name + "' of collection '" +
+                                                  collection +
                                                   "' cannot be queried yet: its values are being "
                                                   "filled in"};
   }
   return Done{};
+}
+
+Status check_conditions(DatabaseSession& connection, const std::string& collection,
+                        std::span<const AttributeCondition> conditions) {
+  std::vector<std::string> names;
+  for (const AttributeCondition& condition : conditions) names.push_back(condition.name);
+  return check_names(connection, collection, names);
 }
 
 }  // namespace watertight::store

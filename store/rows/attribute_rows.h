@@ -29,6 +29,10 @@ Status write_attributes(DatabaseSession& connection, std::string_view collection
 std::string attribute_clauses(std::span<const AttributeCondition> conditions, int next,
                               Parameters& parameters);
 
+/// Ok when all attributes are chosen and complete. Errors: invalid_argument.
+Status check_names(DatabaseSession& connection, const std::string& collection,
+                   std::span<const std::string> names);
+
 /// Ok when all conditions are on chosen attributes that are complete. Errors: invalid_argument.
 Status check_conditions(DatabaseSession& connection, const std::string& collection,
                         std::span<const AttributeCondition> conditions);

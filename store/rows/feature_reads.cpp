@@ -6,6 +6,7 @@
 
 #include "store/rows/attribute_rows.h"
 #include "store/rows/feature_rows.h"
+#include "store/rows/filter_rows.h"
 #include "store/rows/packed_solids.h"
 
 namespace watertight::store {
@@ -120,15 +121,17 @@ Result<Rows> summary_rows(DatabaseSession& connection, const FeatureQuery& query
   rest += " ORDER BY hashtextextended(f.id, 0) LIMIT $";
   rest += std::to_string(query.after.empty() ? next : next + 1);
   parameters.int8(limit);
-  rest =
-      attribute_clauses(query.where, query.after.empty() ? next + 1 : next + 2, parameters) + rest;
+  int own = query.after.empty() ? next + 1 : next + 2;  // the number of the next parameter
+  std::string clauses;
+  if (query.filter) clauses = " AND " + filter_clause(*query.filter, own, parameters);
+  rest = clauses + attribute_clauses(query.where, own, parameters) + rest;
   const std::string statement =
       "SELECT f.id, k.type, f.version, f.solids::int8, f.blob_bytes::int8,"
       " min_x, min_y, min_z, max_x, max_y, max_z, f.unproven::int8, f.is_proven::int::int8" +
       matching(query) + rest;
   // A query of attributes is planned for its values.
-  return query.where.empty() ? connection.ask(statement, parameters)
-                             : connection.run(statement, parameters);
+  return query.where.empty() && !query.filter ? connection.ask(statement, parameters)
+                                              : connection.run(statement, parameters);
 }
 
 FeatureSummary summary_of(const Rows& rows, int row) {
@@ -311,6 +314,10 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
   }
   if (Status able = check_conditions(connection, query.collection, query.where); !able) {
     return std::move(able).error();
+  }
+  if (query.filter) {
+    const Status able = check_names(connection, query.collection, names_in(*query.filter));
+    if (!able) return able.error();
   }
   const bool has_more = page.features.size() > limit;
   if (has_more) page.features.resize(limit);

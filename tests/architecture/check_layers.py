@@ -35,7 +35,7 @@ import sys
 import tempfile
 
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
-           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "pipeline", "files", "report", "web", "server", "cli", "sql"]
+           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "cql2", "pipeline", "files", "report", "web", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
 MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/
@@ -50,7 +50,7 @@ HOMES = [
     (r"(postgresql/)?(libpq-fe|libpq-events)\.h", "libpq",
      [r"store/", r"tests/unit/store/", r"tests/integration/", r"bench/"]),
     (r"nlohmann/", "nlohmann-json",
-     [r"formats/", r"tiles/", r"server/", r"cli/", r"validate/report_json", r"tests/", r"bench/"]),
+     [r"formats/", r"tiles/", r"cql2/", r"server/", r"cli/", r"validate/report_json", r"tests/", r"bench/"]),
     (r"CGAL/", "CGAL",
      [r"geometry/", r"tessellate/", r"delaunay/", r"tests/", r"bench/"]),
     (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),

@@ -15,6 +15,7 @@
 
 #include "pipeline/stored/attributes.h"
 #include "store/solid_store.h"
+#include "tests/unit/pipeline/filter_oracle.h"
 
 namespace watertight::samples {
 
@@ -185,10 +186,17 @@ class MemoryStore : public SolidStore {
       if (attributes_[query.collection].contains(condition.name)) continue;
       return Error{ErrorCode::invalid_argument, "the attribute is not chosen"};
     }
+    if (query.filter) {
+      for (const std::string& name : store::names_in(*query.filter)) {
+        if (attributes_[query.collection].contains(name)) continue;
+        return Error{ErrorCode::invalid_argument, "the attribute is not chosen"};
+      }
+    }
     for (const auto& [id, feature] : features_[query.collection]) {
       if (query.box && !(feature.box && overlap(*query.box, *feature.box))) continue;
       if (id <= query.after || !fulfils(feature, query.where)) continue;
       if (query.is_proven && feature.is_proven() != *query.is_proven) continue;
+      if (query.filter && !passes(feature, *query.filter)) continue;
       if (page.features.size() == query.limit) {
         page.next = page.features.back().id;
         break;
@@ -317,6 +325,15 @@ class MemoryStore : public SolidStore {
                                 attribute.value) != condition.values.end();
              });
     });
+  }
+  static bool passes(const StoredFeature& feature, const store::Filter& filter) {
+    std::vector<std::string> names = store::names_in(filter);
+    std::sort(names.begin(), names.end());
+    Values values;
+    if (const auto found = pipeline::read_attributes(feature, names)) {
+      for (const auto& attribute : *found) values[names[attribute.name]].push_back(attribute.value);
+    }
+    return truth_of(filter, values, feature.box).value_or(false);
   }
   static Error away() { return Error{ErrorCode::unavailable, "the database is away"}; }
   static bool overlap(const store::StoredBox& a, const store::StoredBox& b) {

@@ -17,6 +17,73 @@ using samples::Json;
 using samples::problem_of;
 using Fixture = samples::RoutesFixture;
 
+// Abstract tests of part 3: /conf/filter, /conf/features-filter, /conf/queryables; of CQL2:
+// /conf/cql2-text, /conf/cql2-json, /conf/basic-cql2, /conf/advanced-comparison-operators.
+TEST_CASE_METHOD(Fixture, "a filter in CQL2 selects items, as text and as JSON") {
+  const auto house = [](const std::string& id, const std::string& attributes) {
+    return R"({"type":"CityJSONFeature","id":")" + id + R"(","CityObjects":{")" + id +
+           R"(":{"type":"Building","attributes":)" + attributes + R"(}},"vertices":[]})";
+  };
+  const std::string lines = samples::sequence(
+      {house("a", R"({"height":12.5,"roof":"flat","old":true,"built":"1899-03-01"})"),
+       house("b", R"({"height":3,"roof":"gable","old":false,"built":"1950-01-01"})"),
+       house("c", R"({"roof":"flatter"})"), samples::feature("d")});
+  REQUIRE(post("/collections/town/items", lines).status == 201);
+  REQUIRE(send({"PUT",
+                "/collections/town/attributes",
+                {{"content-type", "application/json"}},
+                R"({"attributes":["height","roof","old","built"]})"})
+              .status == 200);
+  const auto ids = [&](const std::string& filter, const std::string& more = "") {
+    const server::Response response =
+        get("/collections/town/items?limit=100&filter=" + server::percent_encode(filter) + more);
+    INFO(filter << ' ' << response.body);
+    REQUIRE(response.status == 200);
+    std::string found;
+    const Json page = Json::parse(response.body);
+    for (const Json& item : page["features"]) found += item["id"].get<std::string>();
+    return found;
+  };
+  const std::pair<const char*, const char*> kTexts[] = {{"height > 3", "a"},
+                                                        {"height >= 3", "ab"},
+                                                        {"height <> 3", "ad"},
+                                                        {"NOT height = 3", "ad"},
+                                                        {"roof = 'flat' OR old = FALSE", "ab"},
+                                                        {"roof LIKE 'flat%'", "ac"},
+                                                        {"roof NOT LIKE 'flat%'", "b"},
+                                                        {"roof IN ('gable','flatter')", "bc"},
+                                                        {"height BETWEEN 3 AND 12.5", "ab"},
+                                                        {"height IS NULL", "c"},
+                                                        {"NOT (height > 3 OR roof = 'x')", "b"},
+                                                        {"built < DATE('1900-01-01')", "a"},
+                                                        {"TRUE", "abcd"},
+                                                        {"FALSE", ""}};
+  for (const auto& [filter, found] : kTexts) CHECK(ids(filter) == found);
+  CHECK(ids("roof LIKE 'flat%'", "&height=12.5") == "a");
+  CHECK(ids(R"({"op":"and","args":[{"op":">=","args":[{"property":"height"},3]},
+            {"op":"like","args":[{"property":"roof"},"g%"]}]})",
+            "&filter-lang=cql2-json") == "b");
+  const std::string storage = "&filter-crs=" + server::percent_encode(server::crs_uri(7415));
+  CHECK(ids("S_INTERSECTS(geometry, BBOX(-1000, -1000, 1000, 1000))", storage) == "d");
+  CHECK(ids("NOT S_INTERSECTS(geometry, BBOX(-1000, -1000, 1000, 1000))", storage) == "abc");
+  CHECK(ids("S_INTERSECTS(geometry, BBOX(5000, 5000, 6000, 6000))", storage) == "");
+  const auto page =
+      get("/collections/town/items?limit=1&filter=" + server::percent_encode("height >= 3"));
+  CHECK(page.body.find("filter=height%20%3E%3D%203") != std::string::npos);  // in the next link
+  for (const char* wrong :
+       {"?filter=", "?filter=height", "?filter=width%20%3D%203", "?filter-lang=ecql&filter=TRUE",
+        "?filter=TRUE&filter-lang=cql2-json&filter-crs=x", "?filter=height%20%3D%203%29"}) {
+    INFO(wrong);
+    CHECK(get(std::string("/collections/town/items") + wrong).status == 400);
+  }
+  const Json problem = problem_of(get("/collections/town/items?filter=height%20%3D%20%27"));
+  CHECK(problem["detail"].get<std::string>().find("(at character 9)") != std::string::npos);
+  CHECK_FALSE(problem.contains("byteOffset"));
+  const Json queryables = Json::parse(get("/collections/town/queryables").body);
+  CHECK(queryables["properties"]["geometry"]["x-ogc-role"] == "primary-geometry");
+  CHECK(queryables["properties"].contains("height"));
+}
+
 TEST_CASE_METHOD(Fixture, "chosen attributes select items, others are refused by name") {
   const std::string lines = samples::sequence(
       {R"({"type":"CityJSONFeature","id":"a","CityObjects":{"a":{"type":"Building","attributes":)"

@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch_test_macros.hpp>
+#include <map>
+#include <random>
+#include <set>
 #include <sstream>
 #include <thread>
 
 #include "fixture.h"
+#include "tests/unit/pipeline/filter_oracle.h"
 
 namespace watertight {
 using store::AttributeCondition;
@@ -346,6 +350,111 @@ TEST_CASE("queries of the view use the indexes") {
           std::string::npos);
     CHECK(!database.ask("SELECT string_agg(feature, ' ') FROM (" + query + ") q").empty());
   }
+}
+
+namespace {
+
+/// A random filter over the attributes a, b and c, of at most so many levels.
+store::Filter random_filter(std::mt19937& random, int levels) {
+  using Kind = store::Filter::Kind;
+  const auto value = [&] {
+    const int choice = static_cast<int>(random() % 3);
+    if (choice == 0) return AttributeValue{Type::number, std::to_string(random() % 4)};
+    if (choice == 1) return AttributeValue{Type::truth, random() % 2 == 0 ? "true" : "false"};
+    return AttributeValue{Type::text,
+                          std::string(1 + random() % 2, static_cast<char>('x' + random() % 3))};
+  };
+  const auto kind = static_cast<Kind>(levels == 0 ? 3 + random() % 6 : random() % 9);
+  store::Filter filter{kind};
+  switch (kind) {
+    case Kind::all:
+    case Kind::any:
+      for (int i = 0; i < 2; ++i) filter.parts.push_back(random_filter(random, levels - 1));
+      break;
+    case Kind::no:
+      filter.parts.push_back(random_filter(random, levels - 1));
+      break;
+    case Kind::box:
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        filter.box.min[axis] = static_cast<double>(random() % 12);
+        filter.box.max[axis] = filter.box.min[axis] + static_cast<double>(random() % 4);
+      }
+      break;
+    case Kind::constant:
+      filter.truth = random() % 2 == 0;
+      break;
+    default:
+      filter.name = std::string(1, static_cast<char>('a' + random() % 3));
+      filter.comparison = static_cast<Comparison>(random() % 6);
+      filter.values = {value(), value()};
+      if (kind == Kind::like) {
+        constexpr const char* kPatterns[] = {"x%", "_", "%y", "__", "%", "x\\%", "z_"};
+        filter.values = {{Type::text, kPatterns[random() % std::size(kPatterns)]}};
+      }
+  }
+  return filter;
+}
+
+}  // namespace
+
+TEST_CASE("a filter selects the features for which it is true, by SQL as by another way") {
+  const Database database;
+  const auto store = open(database);
+  std::mt19937 random(11);
+  std::vector<StoredFeature> features;
+  std::map<std::string, samples::Values> values;
+  for (int i = 0; i < 60; ++i) {
+    const std::string id = "f" + std::to_string(i);
+    std::string lines;
+    for (auto count = random() % 5; count > 0; --count) {
+      const std::string name(1, static_cast<char>('a' + random() % 3));
+      const auto type = static_cast<Type>(random() % 3);
+      const std::string text =
+          type == Type::number ? std::to_string(random() % 4)
+          : type == Type::truth
+              ? (random() % 2 == 0 ? "true" : "false")
+              : std::string(1 + random() % 2, static_cast<char>('x' + random() % 3));
+      const char* words[] = {"number", "text", "truth"};
+      lines += line(name, id + "-" + std::to_string(count), words[static_cast<int>(type)], text);
+      values[id][name].push_back({type, text});
+    }
+    features.push_back(feature(id, lines));
+    const double place = i % 11;
+    if (i % 7 != 0) features.back().box = {{place, place / 2, 0}, {place + 1, place, 3}};
+    if (i % 7 == 0) features.back().box.reset();
+  }
+  put(*store, features);
+  choose(*store, {{"a", "b", "c"}, {}});
+  for (int i = 0; i < 400; ++i) {
+    const store::Filter filter = random_filter(random, 3);
+    store::FeatureQuery query;
+    query.collection = "buildings";
+    query.limit = 100;
+    query.filter = filter;
+    const auto page = store->list(query);
+    REQUIRE(page);
+    std::set<std::string> found;
+    for (const auto& summary : page->features) found.insert(summary.id);
+    for (const StoredFeature& each : features) {
+      INFO("filter " << i << ", feature " << each.id);
+      const bool is_true = samples::truth_of(filter, values[each.id], each.box).value_or(false);
+      CHECK(found.contains(each.id) == is_true);
+    }
+  }
+  store::Filter unknown{store::Filter::Kind::is_null, {}, "d"};
+  store::FeatureQuery query;
+  query.collection = "buildings";
+  query.limit = 100;
+  query.filter = unknown;
+  CHECK(store->list(query).error().code == ErrorCode::invalid_argument);
+  store::Filter deep{};
+  for (int i = 0; i < 40; ++i) {
+    store::Filter outer{store::Filter::Kind::no};
+    outer.parts.push_back(deep);
+    deep = outer;
+  }
+  query.filter = deep;
+  CHECK(store->list(query).error().code == ErrorCode::limit_exceeded);
 }
 
 }  // namespace watertight

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/features/filters.h"
+
+#include "cql2/cql2.h"
+#include "server/features/systems.h"
+
+namespace watertight::server {
+namespace {
+
+/// Puts the boxes of a filter into the storage CRS.
+Status place_boxes(store::Filter& filter, PlaceSystem system,
+                   const store::StoredCollection& collection) {
+  for (store::Filter& part : filter.parts) {
+    if (Status placed = place_boxes(part, system, collection); !placed) return placed;
+  }
+  if (filter.kind != store::Filter::Kind::box) return Done{};
+  const auto choice = choice_of_box(system, filter.box, collection);
+  if (!choice) return choice.error();
+  if (choice->box) {
+    filter.box = *choice->box;
+  } else {
+    filter.kind = store::Filter::Kind::constant;
+    filter.truth = !choice->is_empty;
+  }
+  return Done{};
+}
+
+/// The error of a filter, whose place is said in words.
+Error error_in_filter(const Error& error) {
+  std::string message = error.message;
+  if (error.byte_offset) message += " (at character " + std::to_string(*error.byte_offset) + ")";
+  if (!error.pointer.empty()) message += " (at " + error.pointer + ")";
+  return {ErrorCode::invalid_argument, message};
+}
+
+}  // namespace
+
+Result<std::optional<store::Filter>> filter_of_request(const Target& target,
+                                                       const store::StoredCollection& collection) {
+  const std::string* language = target.parameter("filter-lang");
+  if (language != nullptr && *language != "cql2-text" && *language != "cql2-json") {
+    return Error{ErrorCode::invalid_argument, "filter-lang is cql2-text or cql2-json"};
+  }
+  const auto system = system_of_request(target, "filter-crs", collection.srid);
+  if (!system) return system.error();
+  const std::string* text = target.parameter("filter");
+  if (text == nullptr) return std::optional<store::Filter>();
+  const bool is_json = language != nullptr && *language == "cql2-json";
+  auto filter = is_json ? cql2::read_json(*text) : cql2::read_text(*text);
+  if (!filter) return error_in_filter(filter.error());
+  if (Status placed = place_boxes(*filter, *system, collection); !placed) {
+    return std::move(placed).error();
+  }
+  return std::optional(*std::move(filter));
+}
+
+}  // namespace watertight::server

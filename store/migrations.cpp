@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "store/rows/attribute_schema.h"
+#include "store/attributes/attribute_schema.h"
 #include "store/rows/page_schema.h"
 
 namespace watertight::store {

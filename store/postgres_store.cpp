@@ -11,10 +11,10 @@
 #include <thread>
 #include <utility>
 
+#include "store/attributes/attribute_rows.h"
 #include "store/connection.h"
 #include "store/group_commit.h"
 #include "store/migrations.h"
-#include "store/rows/attribute_rows.h"
 #include "store/rows/feature_rows.h"
 #include "store/solid_store.h"
 

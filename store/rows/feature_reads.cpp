@@ -4,9 +4,9 @@
 #include <limits>
 #include <utility>
 
-#include "store/rows/attribute_rows.h"
+#include "store/attributes/attribute_rows.h"
+#include "store/attributes/filter_rows.h"
 #include "store/rows/feature_rows.h"
-#include "store/rows/filter_rows.h"
 #include "store/rows/packed_solids.h"
 
 namespace watertight::store {

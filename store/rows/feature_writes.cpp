@@ -9,7 +9,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "store/rows/attribute_rows.h"
+#include "store/attributes/attribute_rows.h"
 #include "store/rows/feature_rows.h"
 #include "store/rows/packed_solids.h"
 #include "store/rows/place.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "store/rows/filter_rows.h"
+#include "store/attributes/filter_rows.h"
 
 #include <algorithm>
 

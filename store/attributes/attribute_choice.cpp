@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include "store/rows/attribute_rows.h"
-#include "store/rows/attribute_values.h"
+#include "store/attributes/attribute_rows.h"
+#include "store/attributes/attribute_values.h"
 
 namespace watertight::store {
 namespace {

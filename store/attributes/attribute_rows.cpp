@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The values of chosen attributes: written with their features, and in queries.
-#include "store/rows/attribute_rows.h"
+#include "store/attributes/attribute_rows.h"
 
 #include <algorithm>
 #include <charconv>
 
-#include "store/rows/attribute_values.h"
-#include "store/rows/filter_rows.h"
+#include "store/attributes/attribute_values.h"
+#include "store/attributes/filter_rows.h"
 
 namespace watertight::store {
 namespace {

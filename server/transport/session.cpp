@@ -37,6 +37,7 @@ using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kReadBytes = 16 * 1024;
+constexpr std::size_t kFirstBytes = 1024;  // a connection that waits for a request has little memory
 constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
 constexpr std::size_t kUnbudgeted = 64 * 1024;  // bytes of a body that no budget limits
@@ -185,7 +186,8 @@ awaitable<bool> Session::wait_for_request() {
   if (environment_.is_draining) co_return false;
   stream_.expires_after(seconds(options_.idle_seconds));
   error_code error;
-  const auto space = buffer_.prepare(kReadBytes);
+  buffer_.shrink_to_fit();
+  const auto space = buffer_.prepare(kFirstBytes);
   const std::size_t count =
       co_await stream_.async_read_some(space, redirect_error(use_awaitable, error));
   connection_->enter(Connection::State::receiving);
@@ -281,7 +283,7 @@ awaitable<std::optional<Response>> Session::receive_body(RequestParser& parser) 
     const std::size_t count = space.size() - parser.get().body().size;
     body_.add(count);
     received += count;
-    connection_->body_bytes = body_.size();
+    connection_->body_bytes = received;
     if (sink_) {
       if (body_.size() < kSinkBytes && !parser.is_done()) continue;
       auto refusal = co_await hand_to_sink();

@@ -78,7 +78,7 @@ struct Connection {
   enum class State : std::uint8_t { idle, receiving, answering };
   State state = State::idle;
   std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
-  std::size_t body_bytes = 0;  // of the request that is being received
+  std::uint64_t body_bytes = 0;  // of the request that is being received
   void enter(State next) {
     state = next;
     since = std::chrono::steady_clock::now();

@@ -37,7 +37,8 @@ using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kReadBytes = 16 * 1024;
-constexpr std::size_t kFirstBytes = 1024;  // a connection that waits for a request has little memory
+constexpr std::size_t kFirstBytes =
+    1024;                             // a connection that waits for a request has little memory
 constexpr double kLingerSeconds = 2;  // how long the rest of a request is read after the answer
 constexpr std::uint64_t kLingerBytes = 64ULL << 20;
 constexpr std::size_t kUnbudgeted = 64 * 1024;  // bytes of a body that no budget limits

@@ -4,6 +4,7 @@
 // The service has a collection "delft" with the features of EXAMPLES/delft.city.jsonl.
 import {existsSync, readFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
+import {gzipSync} from 'node:zlib';
 
 const require = createRequire(`${process.cwd()}/`);
 const {chromium} = require('playwright-core');
@@ -133,6 +134,30 @@ async function refuse() {
   troubles.splice(before);  // the browser logs the status 400
 }
 
+async function longFile() {
+  await page.goto(`${service}validate`);
+  const file = {
+    name: 'town.city.jsonl.gz',
+    mimeType: 'application/gzip',
+    buffer: gzipSync(readFileSync(`${examples}/delft.city.jsonl`))
+  };
+  await page.setInputFiles('#file', file);
+  await page.getByText('is too long to be shown here').waitFor();
+  await accessible('a file for a job');
+  await page.getByLabel('Collection').fill('job');
+  await page.getByRole('button', {name: 'Store', exact: true}).click();
+  await page.getByRole('link', {name: 'as this job'}).click();
+  await page.getByRole('cell', {name: 'successful', exact: true}).waitFor();
+  check(
+      await page.getByRole('row', {name: 'stored 159'}).isVisible(),
+      'an archive is stored as a job');
+  await shot('job');
+  await accessible('a job');
+  await page.goto(`${service}jobs`);
+  check(await page.getByRole('link', {name: 'town.city.jsonl.gz'}).isVisible(), 'jobs are listed');
+  await accessible('the list of jobs');
+}
+
 async function otherFormats() {
   await page.goto(`${service}validate`);
   await page.setInputFiles('#file', `${examples}/../tests/golden/findings/103.gml`);
@@ -202,6 +227,7 @@ async function city() {
 try {
   await judgeAndStore();
   await refuse();
+  await longFile();
   await otherFormats();
   await list();
   await city();

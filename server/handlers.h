@@ -54,8 +54,8 @@ struct Route {
 
 /// The parameters of a list of items; others are names of attributes.
 inline constexpr std::string_view kItemParameters[] = {
-    "f",      "limit", "after", "bbox",   "bbox-crs",    "datetime",
-    "proven", "crs",   "lod",   "filter", "filter-lang", "filter-crs"};
+    "f",   "limit", "after",  "bbox",        "bbox-crs",   "datetime", "proven",
+    "crs", "lod",   "filter", "filter-lang", "filter-crs", "sortby"};
 
 /// The parameters of a document that is judged, without and with storing it.
 inline constexpr std::string_view kValidateParameters[] = {

@@ -267,7 +267,7 @@ class PostgresStore final : public SolidStore {
     if (query.filter) {
       if (Status checked = check_filter(*query.filter); !checked) return std::move(checked).error();
     }
-    if (!query.after.empty() && !is_possible_id(query.after)) {
+    if (!query.sort && !query.after.empty() && !is_possible_id(query.after)) {
       return Error{ErrorCode::invalid_argument, "a page cannot start after an impossible id"};
     }
     return read<FeaturePage>([&](DatabaseSession& session) { return read_page(session, query); });

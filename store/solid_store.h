@@ -118,6 +118,14 @@ struct WriteCondition {
   std::vector<std::uint64_t> versions;
 };
 
+/// An order by the values of an attribute that is complete: numbers, then texts, then truths, each
+/// kind ascending or descending, then the features without a value. A feature with several values
+/// is where the first of them puts it, once.
+struct SortKey {
+  std::string name;
+  bool is_descending = false;
+};
+
 struct FeatureQuery {
   std::string collection;
   std::uint64_t limit = 10;
@@ -133,6 +141,8 @@ struct FeatureQuery {
   std::vector<AttributeCondition> where = {};
   /// A condition that must hold besides, on attributes that are complete.
   std::optional<Filter> filter = std::nullopt;
+  /// The order, instead of that of ids; `after` is then a cursor.
+  std::optional<SortKey> sort = std::nullopt;
 };
 
 /// The facts about a feature that lists show.
@@ -145,6 +155,7 @@ struct FeatureSummary {
   std::optional<StoredBox> box;
   std::uint64_t unproven = 0;  // the solids that are not proven
   bool is_proven = true;
+  std::string cursor = {};  // FeatureQuery::after for the features that follow
 };
 
 struct FeaturePage {

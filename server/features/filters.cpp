@@ -54,4 +54,18 @@ Result<std::optional<store::Filter>> filter_of_request(const Target& target,
   return std::optional(*std::move(filter));
 }
 
+Result<std::optional<store::SortKey>> sort_of_request(const Target& target) {
+  const std::string* text = target.parameter("sortby");
+  if (text == nullptr) return std::optional<store::SortKey>();
+  store::SortKey key{*text, text->starts_with('-')};
+  if (key.name.starts_with('-') || key.name.starts_with('+')) key.name.erase(0, 1);
+  if (key.name.find(',') != std::string::npos) {
+    return Error{ErrorCode::invalid_argument, "sortby is the name of one attribute"};
+  }
+  if (Status checked = store::check_attribute_name(key.name); !checked) {
+    return std::move(checked).error();
+  }
+  return std::optional(std::move(key));
+}
+
 }  // namespace watertight::server

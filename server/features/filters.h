@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The filter of a request for features (OGC API - Features, part 3). Internal to server/.
+// The filter and the order of a request for features (OGC API - Features, parts 3 and 8). Internal
+// to server/.
 #pragma once
 
 #include <optional>
@@ -15,5 +16,9 @@ namespace watertight::server {
 /// choice_of_box().
 Result<std::optional<store::Filter>> filter_of_request(const Target& target,
                                                        const store::StoredCollection& collection);
+
+/// The order in the parameter `sortby`: the name of an attribute, after + (ascending, as without)
+/// or - (descending); nothing without one. Errors: invalid_argument.
+Result<std::optional<store::SortKey>> sort_of_request(const Target& target);
 
 }  // namespace watertight::server

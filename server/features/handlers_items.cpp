@@ -232,7 +232,7 @@ Response written_page(const std::shared_ptr<const PageWork>& work, Lane lane,
     features += **text;
     ++returned;
     if (features.size() > kLongestPage && &feature != &work->page.features.back()) {
-      next = feature.id;
+      next = feature.cursor.empty() ? feature.id : feature.cursor;
       break;
     }
   }
@@ -290,6 +290,8 @@ Result<ListRequest> list_request(const RoutedRequest& request, const PageType& t
   if (!where) return std::move(where).error();
   auto filter = filter_of_request(target, *collection);
   if (!filter) return std::move(filter).error();
+  auto sort = sort_of_request(target);
+  if (!sort) return std::move(sort).error();
   const std::string* after = target.parameter("after");
   const double share = box->box && collection->box ? share_of(*collection->box, *box->box) : 0;
   store::FeatureQuery query{collection->id,
@@ -299,7 +301,8 @@ Result<ListRequest> list_request(const RoutedRequest& request, const PageType& t
                             share,
                             *is_proven,
                             *std::move(where),
-                            *std::move(filter)};
+                            *std::move(filter),
+                            *std::move(sort)};
   return ListRequest{*std::move(collection), *std::move(form), box->is_empty, std::move(query)};
 }
 

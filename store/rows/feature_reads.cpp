@@ -14,32 +14,6 @@ namespace {
 
 constexpr std::int64_t kBatchBytes = 16 << 20;  // the most bytes of blobs and skeletons in a batch
 
-/// The FROM and WHERE clauses of a query: $1 is the collection and, if there is a box, $2 ... $7
-/// are its smallest and largest coordinates. The index of boxes finds candidates in x and y;
-/// PostgreSQL's box operator is generous by 1e-6, so none is missed. The comparison of the six
-/// numbers decides. For a small box the added 0 keeps PostgreSQL from narrowing the candidates
-/// down by an index that holds all features of the collection; for a larger one PostgreSQL chooses
-/// between place and id; for a box around everything a search by place would save nothing.
-std::string matching(const FeatureQuery& query) {
-  constexpr const char* kFeatures =
-      " FROM watertight.feature_row f JOIN watertight.kind k ON k.key = f.kind WHERE ";
-  constexpr const char* kOfCollection = "= (SELECT key FROM watertight.collection WHERE name = $1)";
-  constexpr const char* kCandidates =
-      " AND watertight.index_box(min_x, min_y, max_x, max_y)"
-      " && watertight.index_box($2, $3, $5, $6)";
-  constexpr const char* kInBox =
-      " AND min_x IS NOT NULL AND min_x <= $5 AND min_y <= $6 AND min_z <= $7"
-      " AND max_x >= $2 AND max_y >= $3 AND max_z >= $4";
-  constexpr double kSmall = 1.0 / 16;
-  const bool is_small = query.box && query.share < kSmall;
-  std::string clauses = kFeatures;
-  clauses.append(is_small ? "f.collection + 0 " : "f.collection ").append(kOfCollection);
-  if (query.box && query.share < 1) clauses.append(kCandidates);
-  if (query.box) clauses.append(kInBox);
-  if (query.is_proven) clauses.append(*query.is_proven ? " AND is_proven" : " AND NOT is_proven");
-  return clauses;
-}
-
 const char* const kFeatureColumns =
     "SELECT f.id, f.version, f.kind::int8, f.dictionary::int8, f.solids::int8, f.packed_solids,"
     " f.packed_text, f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z,"
@@ -94,57 +68,6 @@ Result<std::vector<StoredFeature>> features_of(DatabaseSession& connection, cons
     features.push_back(*std::move(feature));
   }
   return features;
-}
-
-/// The parameters of matching(): $1 is the collection and, if there is a box, $2 ... $7 are its
-/// smallest and largest coordinates.
-Parameters filter_parameters(const FeatureQuery& query) {
-  Parameters parameters;
-  parameters.text(query.collection);
-  if (query.box) {
-    for (const double value : query.box->min) parameters.float8(value);
-    for (const double value : query.box->max) parameters.float8(value);
-  }
-  return parameters;
-}
-
-Result<Rows> summary_rows(DatabaseSession& connection, const FeatureQuery& query,
-                          std::int64_t limit) {
-  Parameters parameters = filter_parameters(query);
-  // In order of the hashes of ids, which are unique in a collection and in an index.
-  const int next = query.box ? 8 : 2;
-  std::string rest;
-  if (!query.after.empty()) {
-    rest = " AND hashtextextended(f.id, 0) > hashtextextended($" + std::to_string(next) + ", 0)";
-    parameters.text(query.after);
-  }
-  rest += " ORDER BY hashtextextended(f.id, 0) LIMIT $";
-  rest += std::to_string(query.after.empty() ? next : next + 1);
-  parameters.int8(limit);
-  int own = query.after.empty() ? next + 1 : next + 2;  // the number of the next parameter
-  std::string clauses;
-  if (query.filter) clauses = " AND " + filter_clause(*query.filter, own, parameters);
-  rest = clauses + attribute_clauses(query.where, own, parameters) + rest;
-  const std::string statement =
-      "SELECT f.id, k.type, f.version, f.solids::int8, f.blob_bytes::int8,"
-      " min_x, min_y, min_z, max_x, max_y, max_z, f.unproven::int8, f.is_proven::int::int8" +
-      matching(query) + rest;
-  // A query of attributes is planned for its values.
-  return query.where.empty() && !query.filter ? connection.ask(statement, parameters)
-                                              : connection.run(statement, parameters);
-}
-
-FeatureSummary summary_of(const Rows& rows, int row) {
-  FeatureSummary summary;
-  summary.id = rows.text(row, 0);
-  summary.type = rows.text(row, 1);
-  summary.version = static_cast<std::uint64_t>(rows.int8(row, 2));
-  summary.solids = static_cast<std::uint64_t>(rows.int8(row, 3));
-  summary.blob_bytes = static_cast<std::uint64_t>(rows.int8(row, 4));
-  summary.box = box_of(rows, row, 5);
-  summary.unproven = static_cast<std::uint64_t>(rows.int8(row, 11));
-  summary.is_proven = rows.int8(row, 12) != 0;
-  return summary;
 }
 
 /// The place number and the id after which the next batch of features begins.
@@ -213,19 +136,18 @@ Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& col
   return size;
 }
 
-/// The key of a collection. Errors: not_found.
+}  // namespace
+
+Error no_feature(const std::string& collection, const std::string& id) {
+  return {ErrorCode::not_found, "collection '" + collection + "' has no feature '" + id + "'"};
+}
+
 Result<std::string> key_of_collection(DatabaseSession& connection, const std::string& id) {
   const Result<Rows> exists = connection.ask(
       "SELECT key::text FROM watertight.collection WHERE name = $1", Parameters().text(id));
   if (!exists) return exists.error();
   if (exists->size() == 0) return no_collection(id);
   return std::string(exists->text(0, 0));
-}
-
-}  // namespace
-
-Error no_feature(const std::string& collection, const std::string& id) {
-  return {ErrorCode::not_found, "collection '" + collection + "' has no feature '" + id + "'"};
 }
 
 std::optional<StoredBox> box_of(const Rows& rows, int row, int first_column) {
@@ -299,30 +221,6 @@ Result<std::uint64_t> read_version(DatabaseSession& connection, const std::strin
   if (!rows) return rows.error();
   if (rows->size() == 0) return no_feature(collection, id);
   return static_cast<std::uint64_t>(rows->int8(0, 0));
-}
-
-Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query) {
-  const std::uint64_t limit = std::min(query.limit, kLargestPage);
-  FeaturePage page;
-  // One feature more than asked for shows whether there is a next page.
-  const Result<Rows> rows = summary_rows(connection, query, static_cast<std::int64_t>(limit) + 1);
-  if (!rows) return rows.error();
-  for (int row = 0; row < rows->size(); ++row) page.features.push_back(summary_of(*rows, row));
-  if (page.features.empty()) {
-    const auto exists = key_of_collection(connection, query.collection);
-    if (!exists) return exists.error();
-  }
-  if (Status able = check_conditions(connection, query.collection, query.where); !able) {
-    return std::move(able).error();
-  }
-  if (query.filter) {
-    const Status able = check_names(connection, query.collection, names_in(*query.filter));
-    if (!able) return able.error();
-  }
-  const bool has_more = page.features.size() > limit;
-  if (has_more) page.features.resize(limit);
-  if (has_more && limit > 0) page.next = page.features.back().id;
-  return page;
 }
 
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,

@@ -106,6 +106,8 @@ Result<packing::DictionaryPointer> read_dictionary(DatabaseSession& connection,
                                                    SharedRows& shared);
 Result<std::uint64_t> read_version(DatabaseSession& connection, const std::string& collection,
                                    const std::string& id);
+/// The key of a collection. Errors: not_found.
+Result<std::string> key_of_collection(DatabaseSession& connection, const std::string& id);
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query);
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
                                 std::uint64_t limit, const std::string& after,

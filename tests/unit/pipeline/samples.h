@@ -192,6 +192,9 @@ class MemoryStore : public SolidStore {
         return Error{ErrorCode::invalid_argument, "the attribute is not chosen"};
       }
     }
+    if (query.sort && !attributes_[query.collection].contains(query.sort->name)) {
+      return Error{ErrorCode::invalid_argument, "the attribute is not chosen"};
+    }
     for (const auto& [id, feature] : features_[query.collection]) {
       if (query.box && !(feature.box && overlap(*query.box, *feature.box))) continue;
       if (id <= query.after || !fulfils(feature, query.where)) continue;

@@ -70,8 +70,10 @@ TEST_CASE_METHOD(Fixture, "a filter in CQL2 selects items, as text and as JSON")
   const auto page =
       get("/collections/town/items?limit=1&filter=" + server::percent_encode("height >= 3"));
   CHECK(page.body.find("filter=height%20%3E%3D%203") != std::string::npos);  // in the next link
+  CHECK(get("/collections/town/items?sortby=-height").status == 200);
   for (const char* wrong :
-       {"?filter=", "?filter=height", "?filter=width%20%3D%203", "?filter-lang=ecql&filter=TRUE",
+       {"?sortby=", "?sortby=-", "?sortby=width", "?sortby=height,roof",
+        "?filter=", "?filter=height", "?filter=width%20%3D%203", "?filter-lang=ecql&filter=TRUE",
         "?filter=TRUE&filter-lang=cql2-json&filter-crs=x", "?filter=height%20%3D%203%29"}) {
     INFO(wrong);
     CHECK(get(std::string("/collections/town/items") + wrong).status == 400);

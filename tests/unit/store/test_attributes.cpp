@@ -457,4 +457,84 @@ TEST_CASE("a filter selects the features for which it is true, by SQL as by anot
   CHECK(store->list(query).error().code == ErrorCode::limit_exceeded);
 }
 
+TEST_CASE("a list can be in the order of an attribute, each feature once") {
+  const Database database;
+  const auto store = open(database);
+  std::mt19937 random(5);
+  std::vector<StoredFeature> features;
+  std::map<std::string, std::vector<AttributeValue>> values;
+  for (int i = 0; i < 80; ++i) {
+    const std::string id = "f" + std::to_string(i);
+    std::string lines;
+    for (auto count = random() % 4; count > 0; --count) {
+      const auto type = static_cast<Type>(random() % 3);
+      const std::string text = type == Type::number  ? std::to_string(random() % 9) + ".50"
+                               : type == Type::truth ? (random() % 2 == 0 ? "true" : "false")
+                                                     : std::string(1 + random() % 3, 'x');
+      const char* words[] = {"number", "text", "truth"};
+      lines += line("a", id + "-" + std::to_string(count), words[static_cast<int>(type)], text);
+      values[id].push_back({type, text});
+    }
+    features.push_back(feature(id, lines));
+  }
+  put(*store, features);
+  choose(*store, {{"a"}, {}});
+  for (const bool is_down : {false, true}) {
+    // The rank of a feature: the kind of its first value, then that value.
+    const auto rank = [&](const std::string& id) {
+      std::pair<int, std::string> best{3, ""};
+      for (const AttributeValue& value : values[id]) {
+        const std::pair<int, std::string> one{static_cast<int>(value.type), value.text};
+        const bool is_first = one.first < best.first ||
+                              (one.first == best.first &&
+                               (is_down ? one.second > best.second : one.second < best.second));
+        if (is_first) best = one;
+      }
+      return best;
+    };
+    for (const std::uint64_t limit : {1, 7, 100}) {
+      store::FeatureQuery query;
+      query.collection = "buildings";
+      query.limit = limit;
+      query.sort = store::SortKey{"a", is_down};
+      std::vector<std::string> ids;
+      do {
+        const auto page = store->list(query);
+        REQUIRE(page);
+        for (const auto& summary : page->features) ids.push_back(summary.id);
+        query.after = page->next;
+      } while (!query.after.empty());
+      CHECK(ids.size() == features.size());
+      CHECK(std::set<std::string>(ids.begin(), ids.end()).size() == features.size());
+      for (std::size_t i = 1; i < ids.size(); ++i) {
+        const auto before = rank(ids[i - 1]);
+        const auto here = rank(ids[i]);
+        INFO(ids[i - 1] << " before " << ids[i]);
+        CHECK(before.first <= here.first);
+        if (before.first != here.first) continue;
+        CHECK((is_down ? before.second >= here.second : before.second <= here.second));
+      }
+    }
+  }
+  store::FeatureQuery query;
+  query.collection = "buildings";
+  query.sort = store::SortKey{"a", false};
+  query.filter = store::Filter{store::Filter::Kind::is_null, {}, "a"};
+  const auto without = store->list(query);
+  REQUIRE(without);
+  for (const auto& summary : without->features) CHECK(values[summary.id].empty());
+  query.filter.reset();
+  for (const char* wrong : {"f1", "n3:1.5", "n9:1f1", "x1:af1", "n1:xf1", "n2:1-f1", "n:f1",
+                            "n99999999999999999999:1f", "b1:1f", "t-1:f", "n3:1e9f"}) {
+    INFO(wrong);
+    query.after = wrong;
+    CHECK(store->list(query).error().code == ErrorCode::invalid_argument);
+  }
+  query.after.clear();
+  query.sort->name = "b";
+  CHECK(store->list(query).error().code == ErrorCode::invalid_argument);
+  query.collection = "none";
+  CHECK(store->list(query).error().code == ErrorCode::not_found);
+}
+
 }  // namespace watertight

@@ -330,11 +330,22 @@ std::string job_page(const Json& job) {
   const bool is_over = job.contains("finished");
   std::string body = is_over ? "" : view("job");
   body += "<table>\n";
-  for (const char* name :
-       {"status", "message", "collection", "bytes", "created", "started", "finished"}) {
-    if (job.contains(name)) body += fact(name, job[name]);
+  constexpr std::pair<const char*, std::string_view> kFacts[] = {
+      {"status", "Status"},    {"message", "Message"}, {"collection", "Collection"},
+      {"bytes", "Bytes sent"}, {"created", "Sent"},    {"started", "Begun"},
+      {"finished", "Over"}};
+  for (const auto& [name, text] : kFacts) {
+    if (job.contains(name)) body += fact(text, job[name]);
   }
-  for (const auto& [name, value] : job["counts"].items()) body += fact(name, value);
+  constexpr std::pair<const char*, std::string_view> kCounts[] = {
+      {"features", "Features"},
+      {"valid", "Features that are valid"},
+      {"invalid", "Features that are not valid"},
+      {"undecided", "Features that are undecided"},
+      {"stored", "Features stored"},
+      {"unprovenFeatures", "Features stored without proof"},
+      {"unprovenSolids", "Solids stored without proof"}};
+  for (const auto& [name, text] : kCounts) body += fact(text, job["counts"][name]);
   body += "</table>\n<ul>\n";
   for (const Json& item : job["links"]) {
     if (item["rel"] == "self" || item["rel"] == "monitor") continue;

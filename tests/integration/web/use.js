@@ -149,7 +149,7 @@ async function longFile() {
   await page.getByRole('link', {name: 'as this job'}).click();
   await page.getByRole('cell', {name: 'successful', exact: true}).waitFor();
   check(
-      await page.getByRole('row', {name: 'stored 159'}).isVisible(),
+      await page.getByRole('row', {name: 'Features stored 159'}).isVisible(),
       'an archive is stored as a job');
   await shot('job');
   await accessible('a job');

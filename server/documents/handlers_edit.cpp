@@ -126,7 +126,7 @@ Response put_item(const RoutedRequest& request) {
   const auto header = header_for(request);
   if (!header) return to_response(to_problem(header.error()));
   const auto read = [&] {
-    return read_submission(request, AcceptedFormats::city_models, *header, options->surfaces);
+    return read_submission(request, AcceptedFormats::with_ids, *header, options->surfaces);
   };
   Submission looked_at = read();
   if (looked_at.problem) return to_response(*looked_at.problem);

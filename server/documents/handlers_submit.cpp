@@ -47,7 +47,7 @@ std::optional<Problem> read_into(pipeline::Ingestion& ingestion, const RoutedReq
   }
   const auto header = header_for(request);
   if (!header) return to_problem(header.error());
-  Submission submission = read_submission(request, AcceptedFormats::city_models, *header, surfaces);
+  Submission submission = read_submission(request, AcceptedFormats::with_ids, *header, surfaces);
   if (submission.problem) return submission.problem;
   const Status added = ingestion.add(*submission.reader);
   return added ? std::nullopt : std::optional(problem_of_body(added.error()));

@@ -81,8 +81,10 @@ constexpr auto kNames = std::to_array<FormatName>({
 });
 
 bool is_allowed(Format format, AcceptedFormats accepted) {
-  return accepted == AcceptedFormats::all || format == Format::city_json ||
-         format == Format::city_json_seq;
+  constexpr std::array kWithIds = {Format::city_json, Format::city_json_seq, Format::gml,
+                                   Format::json_fg};
+  return accepted == AcceptedFormats::all ||
+         std::find(kWithIds.begin(), kWithIds.end(), format) != kWithIds.end();
 }
 
 Problem unsupported_type(AcceptedFormats accepted) {
@@ -91,7 +93,7 @@ Problem unsupported_type(AcceptedFormats accepted) {
     if (!is_allowed(name.format, accepted) || name.type.empty()) continue;
     known += (known.empty() ? "" : ", ") + std::string(name.type);
   }
-  if (accepted == AcceptedFormats::city_models) known.append(", ").append(kContainer);
+  if (accepted == AcceptedFormats::with_ids) known.append(", ").append(kContainer);
   return Problem{415, "unsupported", "send a body of one of these types: " + known, {}, {}, {}, {}};
 }
 
@@ -218,7 +220,7 @@ std::string top_level_type(std::string_view json) {
 }
 
 bool is_bare_feature(const RoutedRequest& request) {
-  const auto format = stated_format(request, AcceptedFormats::city_models);
+  const auto format = stated_format(request, AcceptedFormats::with_ids);
   const std::string& body = request.request.body;
   if (format == Format::city_json_seq) return formats::is_lone_feature(body);
   return format == Format::city_json && top_level_type(body) == "CityJSONFeature";
@@ -258,7 +260,7 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   const std::string& body = request.request.body;
   formats::ReadOptions options;
   options.limits = request.service.options.limits;
-  const bool is_stored = accepted == AcceptedFormats::city_models;
+  const bool is_stored = accepted == AcceptedFormats::with_ids;
   options.keep_text = is_stored || surfaces != formats::Surfaces::as_solids;
   options.surfaces = surfaces;
   format = format_of_content(*format, body);

@@ -17,8 +17,9 @@ namespace watertight::server {
 /// word; "" when there is none. Reads no further than needed.
 std::string top_level_type(std::string_view json);
 
-/// The formats that clients may send.
-enum class AcceptedFormats : std::uint8_t { city_models, all };
+/// The formats that clients may send: those whose features have ids, so that they can be stored, or
+/// all.
+enum class AcceptedFormats : std::uint8_t { with_ids, all };
 
 /// The document in a body, or the problem with it: 400 malformed, 413, 415, 422, 503. The format
 /// follows from f=, else from Content-Type. A CityJSONSeq is read while it is used, so the request

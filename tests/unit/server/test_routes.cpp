@@ -240,7 +240,7 @@ TEST_CASE_METHOD(Fixture,
 }
 
 TEST_CASE_METHOD(Fixture,
-                 "each format has its media types and its name; only city models are stored") {
+                 "each format has its media types and its name; only those with ids are stored") {
   struct Sample {
     std::string f;
     std::vector<std::string> types;
@@ -274,12 +274,27 @@ TEST_CASE_METHOD(Fixture,
       return response.status == 200 && Json::parse(response.body)["verdict"] == "invalid";
     };
     CHECK(is_read(post("/validate?f=" + sample.f, sample.body, "")));
-    CHECK(post("/collections/town/items?f=" + sample.f, sample.body, "").status == 415);
+    // Formats whose features have ids can be stored: one sample has none, the other is not valid.
+    const unsigned refusal = sample.f == "gml" ? 400 : sample.f == "jsonfg" ? 422 : 415;
+    CHECK(post("/collections/town/items?f=" + sample.f, sample.body, "").status == refusal);
     for (const std::string& type : sample.types) {
       CHECK(is_read(post("/validate", sample.body, type)));
-      CHECK(post("/collections/town/items", sample.body, type).status == 415);
+      CHECK(post("/collections/town/items", sample.body, type).status == refusal);
     }
   }
+}
+
+TEST_CASE_METHOD(Fixture, "a GML document is stored, and its features are given out again") {
+  const std::string text = test::read_text(WATERTIGHT_SOURCES "/tests/golden/findings/103.gml");
+  const auto stored = post("/collections/town/items?invalid=keep", text, "application/gml+xml");
+  INFO(stored.body);
+  REQUIRE(stored.status == 201);
+  const std::string id = Json::parse(stored.body)["features"][0]["id"];
+  const auto list = get("/collections/town/items?crs=http://www.opengis.net/def/nil/OGC/0/unknown");
+  REQUIRE(list.status == 200);
+  const Json feature = Json::parse(test::whole(list))["features"][0];
+  CHECK(feature["id"] == id);
+  CHECK(feature["geometry"]["type"] == "MultiPolygon");
 }
 
 TEST_CASE_METHOD(Fixture, "validate answers with the report, a layer or a page, by Accept") {

@@ -183,30 +183,44 @@ def check_cut_upload(service):
 
 
 class Uploader(threading.Thread):
-    """Uploads small archives until told to end, each with a key, again after an answer that did not come."""
+    """Uploads small archives one after the other until told to end, each with a key, and waits for their ends. It
+    asks again after an answer that did not come."""
 
     def __init__(self, service, number):
         super().__init__(daemon=True)
-        self.service, self.number, self.accepted, self.is_over = service, number, [], threading.Event()
+        self.service, self.number, self.is_over = service, number, threading.Event()
+        self.states = {}  # by name: the id and the last status of the job
+
+    def persistently(self, ask):
+        """What `ask` returns, again until it does; nothing after a minute."""
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            try:
+                answer = ask()
+                if answer is not None:
+                    return answer
+            except (OSError, http.client.HTTPException, ValueError):
+                pass
+            time.sleep(0.05)
+        return None
 
     def run(self):
         count = 0
         while not self.is_over.is_set():
             count += 1
             name = f"u{self.number}-{count}"
-            time.sleep(0.05)
             body = archive({f"{part}.city.jsonl": box_document(60, f"{name}-{part}-") for part in range(3)})
-            for _ in range(400):
-                try:
-                    status, made = start_job(self.service, body, {"Idempotency-Key": name}, collection="siege", name=name)
-                    if status in (200, 201):
-                        self.accepted.append((made["jobID"], name))
-                        break
-                except (OSError, http.client.HTTPException, ValueError):
-                    pass
-                time.sleep(0.05)
-                if self.is_over.is_set():
-                    return
+
+            def upload():
+                status, made = start_job(self.service, body, {"Idempotency-Key": name}, collection="siege", name=name)
+                return made["jobID"] if status in (200, 201) else None
+
+            def end_of(job):
+                state = job_of(self.service, job)
+                return state["status"] if state["status"] in OVER else None
+
+            job = self.persistently(upload)
+            self.states[name] = (job, self.persistently(lambda: end_of(job)) if job else None)
 
 
 def check_kills(service, rounds, seed):
@@ -235,14 +249,14 @@ def check_kills(service, rounds, seed):
         uploader.is_over.set()
     for uploader in uploaders:
         uploader.join()
-    jobs = [entry for uploader in uploaders for entry in uploader.accepted]
-    states = {finished(service, job)["status"] for job, _ in jobs}
+    jobs = {name: state for uploader in uploaders for name, state in uploader.states.items()}
+    states = {state for _, state in jobs.values()}
     check(states == {"successful"}, f"{len(jobs)} jobs after {deeds}: {states}")
-    check(len({job for job, _ in jobs}) == len(jobs), "each key made one job")
+    check(len({job for job, _ in jobs.values()}) == len(jobs), "each key made one job")
     status, body = service.request("GET", "/collections/siege/export?f=cityjsonseq", timeout=300)
     ids = [json.loads(line)["id"] for line in body.decode().splitlines()[1:]]
-    wanted = {f"{name}-{part}-{n}" for _, name in jobs for part in range(3) for n in range(60)}
-    check(len(ids) == len(set(ids)) and wanted <= set(ids), f"{len(ids)} features, each once; {len(wanted - set(ids))} lost")
+    wanted = {f"{name}-{part}-{n}" for name in jobs for part in range(3) for n in range(60)}
+    check(len(ids) == len(set(ids)) and wanted == set(ids), f"{len(ids)} features, each once; {len(wanted - set(ids))} lost")
 
 
 def main():

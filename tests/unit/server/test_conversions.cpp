@@ -43,6 +43,19 @@ TEST_CASE_METHOD(Fixture, "an encoded document is decoded byte for byte, whateve
   }
 }
 
+TEST_CASE_METHOD(Fixture, "a GML document is stored, and its features are given out again") {
+  const std::string text = golden("103.gml");
+  const auto stored = post("/collections/town/items?invalid=keep", text, kGml);
+  INFO(stored.body);
+  REQUIRE(stored.status == 201);
+  const std::string id = Json::parse(stored.body)["features"][0]["id"];
+  const auto list = get("/collections/town/items?crs=http://www.opengis.net/def/nil/OGC/0/unknown");
+  REQUIRE(list.status == 200);
+  const Json feature = Json::parse(test::whole(list))["features"][0];
+  CHECK(feature["id"] == id);
+  CHECK(feature["geometry"]["type"] == "MultiPolygon");
+}
+
 TEST_CASE_METHOD(Fixture, "a document that is not valid is not encoded unless that is wanted") {
   const std::string text = golden("102.city.json");
   const auto refused = send_body("/encode", text);

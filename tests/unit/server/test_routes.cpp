@@ -284,19 +284,6 @@ TEST_CASE_METHOD(Fixture,
   }
 }
 
-TEST_CASE_METHOD(Fixture, "a GML document is stored, and its features are given out again") {
-  const std::string text = test::read_text(WATERTIGHT_SOURCES "/tests/golden/findings/103.gml");
-  const auto stored = post("/collections/town/items?invalid=keep", text, "application/gml+xml");
-  INFO(stored.body);
-  REQUIRE(stored.status == 201);
-  const std::string id = Json::parse(stored.body)["features"][0]["id"];
-  const auto list = get("/collections/town/items?crs=http://www.opengis.net/def/nil/OGC/0/unknown");
-  REQUIRE(list.status == 200);
-  const Json feature = Json::parse(test::whole(list))["features"][0];
-  CHECK(feature["id"] == id);
-  CHECK(feature["geometry"]["type"] == "MultiPolygon");
-}
-
 TEST_CASE_METHOD(Fixture, "validate answers with the report, a layer or a page, by Accept") {
   const auto answer = [&](const std::string& accept) {
     return send({"POST",

@@ -91,6 +91,7 @@ class Writer {
 
   std::string on_values(const Filter& filter) {
     if (filter.kind == Kind::like) {
+      if (!is_kept(filter.values.front())) return "false";  // no feature has such a text
       parameters_.text(filter.values.front().text);
       return std::string("v.text LIKE ").append(parameter());
     }

@@ -447,6 +447,9 @@ TEST_CASE("a filter selects the features for which it is true, by SQL as by anot
   query.limit = 100;
   query.filter = unknown;
   CHECK(store->list(query).error().code == ErrorCode::invalid_argument);
+  query.filter = store::Filter{store::Filter::Kind::like, {}, "a"};
+  query.filter->values = {{Type::text, std::string("%\0x", 3)}};
+  CHECK(store->list(query)->features.empty());
   store::Filter deep{};
   for (int i = 0; i < 40; ++i) {
     store::Filter outer{store::Filter::Kind::no};

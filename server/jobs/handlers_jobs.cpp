@@ -115,10 +115,7 @@ Admission begin_job(const RoutedRequest& request, const std::string& owner) {
     admission.sink = *std::move(upload);
     admission.sink_bytes = kLongestJobFile;
   } else {
-    Problem problem = to_problem(upload.error());
-    if (upload.error().code == ErrorCode::limit_exceeded) problem.status = 503;
-    if (upload.error().code == ErrorCode::unavailable) problem.status = 507;
-    admission.refusal = to_response(problem);
+    admission.refusal = to_response(problem_of_upload(upload.error()));
   }
   return admission;
 }
@@ -132,10 +129,8 @@ Response post_job(const RoutedRequest& request) {
     if (auto refusal = upload->take(request.request.body)) return *std::move(refusal);
   }
   const auto accepted = upload->accept();
-  if (accepted) return job_response(request, 201, *accepted);
-  Problem problem = to_problem(accepted.error());
-  if (accepted.error().code == ErrorCode::unavailable) problem.status = 507;
-  return to_response(problem);
+  return accepted ? job_response(request, 201, *accepted)
+                  : to_response(problem_of_upload(accepted.error()));
 }
 
 Response get_jobs(const RoutedRequest& request) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/jobs/jobs.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -13,6 +11,7 @@
 
 #include "server/jobs/job_run.h"
 #include "server/metrics/metrics.h"
+#include "server/transport/priority.h"
 
 namespace watertight::server {
 namespace {
@@ -39,17 +38,21 @@ std::string owned_key(const std::string& owner, const std::string& key) {
   return owner + '/' + key;
 }
 
-Response answer_to(const Error& error) {
+}  // namespace
+
+Problem problem_of_upload(const Error& error) {
   Problem problem = to_problem(error);
   if (error.code == ErrorCode::unavailable) {
     problem.status = 507;
     problem.kind = "storage-full";
     problem.headers.clear();
+  } else if (error.code == ErrorCode::limit_exceeded) {
+    problem.status = 503;
+    problem.kind = "busy";
+    problem.headers.push_back({"Retry-After", "5"});
   }
-  return to_response(problem);
+  return problem;
 }
-
-}  // namespace
 
 Upload::Upload(Jobs& jobs, Job job, JobFolder folder, GrowingFile file)
     : jobs_(jobs), job_(std::move(job)), folder_(std::move(folder)), file_(std::move(file)) {}
@@ -67,9 +70,11 @@ std::optional<Response> Upload::take(std::string_view piece) {
   job_.bytes += piece.size();
   if (job_.bytes - checked_ > kRoomStep) {
     checked_ = job_.bytes;
-    if (Status room = check_room(jobs_.folder_); !room) return answer_to(room.error());
+    if (Status room = check_room(jobs_.folder_); !room)
+      return to_response(problem_of_upload(room.error()));
   }
-  if (Status written = file_->write(piece); !written) return answer_to(written.error());
+  if (Status written = file_->write(piece); !written)
+    return to_response(problem_of_upload(written.error()));
   return std::nullopt;
 }
 
@@ -257,8 +262,7 @@ std::shared_ptr<Jobs::Record> Jobs::next() {
 
 void Jobs::work() {
   // The requests of clients that wait go first.
-  constexpr int kNice = 10;
-  static_cast<void>(setpriority(PRIO_PROCESS, 0, kNice));
+  step_back();
   remove_old();
   while (const auto record = next()) {
     run(*record);

@@ -28,6 +28,9 @@ struct JobView {
 
 class Jobs;
 
+/// The problem with an upload: 507 storage-full, 503 busy, or that of the error.
+Problem problem_of_upload(const Error& error);
+
 /// A file on its way to a job. Without accept() it leaves nothing behind.
 class Upload final : public BodySink {
  public:

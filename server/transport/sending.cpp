@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/transport/sending.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/redirect_error.hpp>
@@ -13,6 +11,7 @@
 
 #include "server/transport/client_watch.h"
 #include "server/transport/messages.h"
+#include "server/transport/priority.h"
 
 namespace watertight::server {
 namespace {
@@ -25,10 +24,6 @@ using asio::use_awaitable;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
-Clock::duration seconds(double value) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(value));
-}
-
 Result<std::string> next_part_guarded(const BodyParts& parts, const CancelPoll& is_cancelled) {
   try {
     return parts(is_cancelled);
@@ -40,12 +35,6 @@ Result<std::string> next_part_guarded(const BodyParts& parts, const CancelPoll& 
 }
 
 }  // namespace
-
-void step_back() {
-  constexpr int kNice = 10;
-  thread_local const bool has_stepped_back = setpriority(PRIO_PROCESS, 0, kNice) == 0;
-  static_cast<void>(has_stepped_back);  // without success the thread computes as any other does
-}
 
 awaitable<Status> Sender::send(Response response, bool keep_alive) {
   const double size = static_cast<double>(response.body.size());

@@ -13,9 +13,11 @@
 
 namespace watertight::server {
 
-/// Makes the scheduler prefer other threads to this one, so that long computing does not delay
-/// short requests when there are more threads than cores.
-void step_back();
+/// So many seconds, as a time of the steady clock.
+inline std::chrono::steady_clock::duration seconds(double value) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(value));
+}
 
 /// Sends the answer to one request.
 class Sender {

@@ -21,6 +21,7 @@
 #include "server/transport/body_coding.h"
 #include "server/transport/client_watch.h"
 #include "server/transport/messages.h"
+#include "server/transport/priority.h"
 #include "server/transport/received_body.h"
 #include "server/transport/sending.h"
 
@@ -46,10 +47,6 @@ constexpr std::size_t kSinkBytes = 256 * 1024;  // that a sink gets at once
 constexpr std::size_t kDiskThreads = 2;
 // A read that has waited so long for a thread is refused: those before it hang, and it would too.
 constexpr std::chrono::seconds kLongestReadWait{2};
-
-Clock::duration seconds(double value) {
-  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(value));
-}
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();

@@ -139,9 +139,11 @@ struct StoreChoice {
 struct ServeCommand {
   StoreChoice store;
   std::string listen = "127.0.0.1:8080";
-  std::string probes;    // "" for no address of their own
-  std::string base_url;  // the start of links, "" for what requests say
-  std::string cors;      // whose web pages may read, "" for none but the service's own
+  std::string probes;           // "" for no address of their own
+  std::string base_url;         // the start of links, "" for what requests say
+  std::string tls_certificate;  // a file; "": clients speak plain HTTP
+  std::string tls_key;          // a file
+  std::string cors;             // whose web pages may read, "" for none but the service's own
   std::optional<std::size_t> connections_per_address;
   bool requires_preconditions = false;
   std::string jobs_folder;         // "" for that in the data directory, if there is one
@@ -182,6 +184,7 @@ struct ExportCommand {
   std::string purpose = "size";  // of a Watertight file, or "ranges"
   bool is_proven_only = false;
   std::vector<std::string> where;  // NAME=VALUE
+  std::string lod;                 // of a GeoPackage; "": the highest of each object
 };
 Exit run(const ExportCommand& command);
 

@@ -319,6 +319,13 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   sub->add_option(
       "--probes", command.probes,
       "ADDRESS:PORT that answers /healthz, /readyz and /metrics only, whatever the clients do");
+  auto* certificate =
+      sub->add_option("--tls-certificate", command.tls_certificate,
+                      "file with the certificate, and those above it, as PEM: clients speak HTTPS")
+          ->envname("WATERTIGHT_TLS_CERTIFICATE");
+  sub->add_option("--tls-key", command.tls_key, "file with the key of the certificate, as PEM")
+      ->needs(certificate)
+      ->envname("WATERTIGHT_TLS_KEY");
   auto* keys = sub->add_option("--keys", command.keys_file,
                                "file of access keys, made by 'watertight key'; read again when it "
                                "changes")
@@ -414,8 +421,8 @@ void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
   sub->add_option("COLLECTION", command.collection, "collection")->required();
   sub->add_option(
          "-o,--output", command.output,
-         "Watertight file (.wt, or - for standard output) or CityJSONSeq (.jsonl; OUT-2, ... if "
-         "the documents have headers that cannot be merged)")
+         "Watertight file (.wt, or - for standard output), CityJSONSeq (.jsonl; OUT-2, ... if "
+         "the documents have headers that cannot be merged) or GeoPackage (.gpkg)")
       ->required();
   add_purpose(*sub, command.purpose);
   sub->add_flag("--proven", command.is_proven_only,
@@ -425,6 +432,7 @@ void add_export(CLI::App& app, ExportCommand& command, Chosen& chosen) {
                   "(again: all must hold)")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
+  sub->add_option("--lod", command.lod, "the level of detail in a GeoPackage; else the highest");
   add_store(*sub, command.store);
   sub->callback([&] {
     require_store(command.store);

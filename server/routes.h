@@ -30,6 +30,7 @@ struct RouteOptions {
   std::uint64_t default_page = 10;
   std::uint64_t largest_findings = 1000;  // the most findings of a report in an answer
   std::size_t longest_report = std::size_t{256} << 20U;  // of POST /validate, bytes
+  bool is_encrypted = false;                             // whether clients speak HTTPS
   std::string base_url;     // the start of links; "": from the request (server/features/links.h)
   std::string cors_origin;  // whose pages may read answers (server/features/cors.h); "": none
   bool requires_preconditions = false;  // on every write; without one it gets 428
@@ -44,7 +45,8 @@ struct Service {
   std::function<Status()> readiness = nullptr;
   /// Keeps answers for items. Null: none is kept. Outlives the service.
   RepresentationCache* cache = nullptr;
-  /// Keeps exports of which ranges are wanted. Null: exports have no ranges. Outlives the service.
+  /// Keeps exports of which ranges are wanted. Null: exports have no ranges, and there are no
+  /// GeoPackages. Outlives the service.
   ExportFiles* export_files = nullptr;
   /// The memory for documents that are read whole, bytes. Null: no limit. Outlives the service.
   Budget* document_memory = nullptr;

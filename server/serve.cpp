@@ -109,8 +109,9 @@ class ReadinessMonitor {
 
 std::string url_of(const ServerOptions& options, std::uint16_t port) {
   const bool is_v6 = options.address.find(':') != std::string::npos;
-  return "http://" + (is_v6 ? "[" + options.address + "]" : options.address) + ":" +
-         std::to_string(port);
+  std::string url = options.is_encrypted() ? "https://" : "http://";
+  url += is_v6 ? "[" + options.address + "]" : options.address;
+  return url + ":" + std::to_string(port);
 }
 
 /// The gate of the options; null if nobody needs a key. Errors: those of Gate::open().
@@ -232,6 +233,7 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   service.options.limits = options.limits;
   service.options.requires_preconditions = options.requires_preconditions;
   service.options.base_url = options.base_url;
+  service.options.is_encrypted = options.server.is_encrypted();
   service.options.cors_origin = options.cors_origin;
   service.gate = gate;
   Metrics metrics;

@@ -54,6 +54,21 @@ Status read_origin(const std::string& origin, server::ServeOptions& options) {
   return origin.empty() ? Status(Done{}) : server::check_origin(origin);
 }
 
+/// Reads the certificate and its key, while the program has the right to.
+Status read_tls(const ServeCommand& command, server::ServerOptions& options) {
+  if (command.tls_certificate.empty()) return Done{};
+  if (command.tls_key.empty()) {
+    return Error{ErrorCode::invalid_argument, "a certificate needs its key (--tls-key)"};
+  }
+  for (const auto& [file, text] : {std::pair(&command.tls_certificate, &options.tls_certificate),
+                                   std::pair(&command.tls_key, &options.tls_key)}) {
+    const auto bytes = files::read_file(*file, Limits{});
+    if (!bytes) return Error{bytes.error().code, *file + ": " + bytes.error().message};
+    *text = as_text(*bytes);
+  }
+  return server::check_tls(options.tls_certificate, options.tls_key);
+}
+
 }  // namespace
 
 Exit run(const ServeCommand& command) {
@@ -93,6 +108,10 @@ Exit run(const ServeCommand& command) {
     return Exit::error;
   }
   limit_addresses(command, options.server);
+  if (const Status read = read_tls(command, options.server); !read) {
+    complain("--tls-certificate", read.error());
+    return Exit::error;
+  }
   options.requires_preconditions = command.requires_preconditions;
   if (!command.probes.empty()) {
     const Status read = read_listen(command.probes, options.probes.emplace());

@@ -70,7 +70,8 @@ std::string base_url(const RoutedRequest& request) {
   if (!is_host(host)) return {};
   std::string_view prefix = first_of(message.header("x-forwarded-prefix"));
   while (prefix.ends_with('/')) prefix.remove_suffix(1);
-  std::string url(is_scheme(scheme) ? scheme : "http");
+  const std::string_view own = request.service.options.is_encrypted ? "https" : "http";
+  std::string url(is_scheme(scheme) ? scheme : own);
   url.append("://").append(host);
   if (is_path(prefix)) url.append(prefix);
   return url;

@@ -65,6 +65,7 @@ class AsioServer final : public HttpServer {
   SessionEnvironment environment_;
   asio::executor_work_guard<asio::io_context::executor_type> guard_;
   tcp::acceptor acceptor_;
+  std::shared_ptr<TlsContext> tls_;  // null: clients speak plain HTTP
   std::uint16_t port_ = 0;
   std::atomic<std::size_t> refused_ = 0;
   std::thread thread_;
@@ -72,6 +73,11 @@ class AsioServer final : public HttpServer {
 
 Status AsioServer::listen() {
   const ServerOptions& options = environment_.options;
+  if (options.is_encrypted()) {
+    auto tls = make_tls(options.tls_certificate, options.tls_key);
+    if (!tls) return std::move(tls).error();
+    tls_ = *std::move(tls);
+  }
   const std::string place = options.address + ":" + std::to_string(options.port);
   error_code error;
   const auto address = asio::ip::make_address(options.address, error);
@@ -120,7 +126,7 @@ void AsioServer::begin_session(tcp::socket socket) {
   error_code error;
   socket.set_option(tcp::no_delay(true), error);
   const auto peer = socket.remote_endpoint(error);
-  auto connection = std::make_shared<Connection>(std::move(socket));
+  auto connection = std::make_shared<Connection>(std::move(socket), tls_.get());
   if (!error) connection->peer = peer.address().to_string();
   if (auto refusal = refusal_of(*connection)) {
     refuse(std::move(connection), *std::move(refusal));

@@ -54,7 +54,10 @@ using LogLine = std::function<void(const std::string& line)>;
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8080;  // 0: any free port
+  std::uint16_t port = 8080;    // 0: any free port
+  std::string tls_certificate;  // the chain of certificates as PEM text; "": plain HTTP
+  std::string tls_key;          // its key, as PEM text
+  bool is_encrypted() const { return !tls_certificate.empty(); }
   std::uint32_t header_bytes = 16 * 1024;
   std::uint64_t body_bytes = 256ULL << 20;            // the most bytes of the body of one request
   std::uint64_t body_bytes_together = 1024ULL << 20;  // the most for all requests being received
@@ -79,6 +82,9 @@ struct ServerOptions {
   std::size_t watchers = 64;   // the same, of those with pauses (Response::pause)
   std::size_t uploads = 64;    // bodies that go to a sink at once; more get 503
 };
+
+/// Ok for a certificate and a key that a server can use. Errors: invalid_argument.
+Status check_tls(const std::string& certificate, const std::string& key);
 
 /// A listening server with its threads.
 class HttpServer {

@@ -44,7 +44,7 @@ class Sender {
   boost::asio::awaitable<Result<std::string>> part_after(const Response& response);
 
   std::shared_ptr<Connection> connection_;
-  boost::beast::tcp_stream& stream_;
+  ClientStream& stream_;
   SessionEnvironment& environment_;
   const ServerOptions& options_;
   bool is_head_;

@@ -95,7 +95,7 @@ class TimeLimit {
 class KeyShare {
  public:
   KeyShare(SessionEnvironment& environment, std::string key,
-           const beast::tcp_stream::executor_type& executor)
+           const ClientStream::executor_type& executor)
       : environment_(environment), key_(std::move(key)) {
     if (key_.empty()) return;
     const auto never = Clock::time_point::max();
@@ -146,7 +146,7 @@ class Session {
                   const Status& sent);
 
   std::shared_ptr<Connection> connection_;
-  beast::tcp_stream& stream_;
+  ClientStream& stream_;
   SessionEnvironment& environment_;
   const ServerOptions& options_;
   beast::flat_buffer buffer_;
@@ -163,11 +163,17 @@ class Session {
 };
 
 awaitable<void> Session::run() {
-  for (;;) {
-    const bool has_request = co_await wait_for_request();
-    if (!has_request) break;
-    const bool goes_on = co_await serve_one();
-    if (!goes_on) break;
+  connection_->enter(Connection::State::receiving);
+  stream_.expires_after(seconds(options_.header_seconds));
+  bool goes_on = co_await stream_.handshake();
+  const bool is_greeted = goes_on;
+  while (goes_on) {
+    goes_on = co_await wait_for_request();
+    if (goes_on) goes_on = co_await serve_one();
+  }
+  if (is_greeted && stream_.is_encrypted()) {
+    stream_.expires_after(seconds(kLingerSeconds));
+    co_await stream_.end_sending();
   }
   error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_both, ignored);
@@ -485,8 +491,8 @@ awaitable<bool> Session::download(Response response, bool keep_alive, Clock::tim
 /// could take the answer from the sender.
 awaitable<void> Session::linger() {
   error_code error;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
   stream_.expires_after(seconds(kLingerSeconds));
+  co_await stream_.end_sending();
   std::array<char, kReadBytes> sink{};
   std::uint64_t total = 0;
   while (!error && total < kLingerBytes) {
@@ -541,10 +547,12 @@ LaneThreads& SessionEnvironment::threads_of(Lane lane) {
 
 awaitable<void> refuse_session(std::shared_ptr<Connection> connection, Response refusal) {
   connection->stream.expires_after(seconds(kLingerSeconds));
+  const bool is_greeted = co_await connection->stream.handshake();
+  if (!is_greeted) co_return;
   auto message = to_message(std::move(refusal), false, false, 11);
   error_code error;
   co_await http::async_write(connection->stream, message, redirect_error(use_awaitable, error));
-  connection->stream.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
+  co_await connection->stream.end_sending();
   std::array<char, kReadBytes> sink{};
   while (!error) {
     co_await connection->stream.async_read_some(asio::buffer(sink),

@@ -11,7 +11,6 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <chrono>
 #include <cstdint>
 #include <list>
@@ -20,6 +19,7 @@
 #include <unordered_map>
 
 #include "server/budget.h"
+#include "server/transport/client_stream.h"
 #include "server/transport/listener.h"
 
 namespace watertight::server {
@@ -72,8 +72,9 @@ class AddressShare {
 /// The stream of a connection, shared with the listener so that stopping can close idle
 /// connections.
 struct Connection {
-  explicit Connection(boost::asio::ip::tcp::socket socket) : stream(std::move(socket)) {}
-  boost::beast::tcp_stream stream;
+  Connection(boost::asio::ip::tcp::socket socket, TlsContext* tls)
+      : stream(std::move(socket), tls) {}
+  ClientStream stream;
   /// The activity of the connection and when it began; for the stream's executor only.
   enum class State : std::uint8_t { idle, receiving, answering };
   State state = State::idle;

@@ -78,6 +78,13 @@ class Service:
         self.start()
         return self
 
+    def refusal(self):
+        """What a service says on standard error that does not start."""
+        done = subprocess.run(self.serve_command(), capture_output=True, cwd=self.folder, text=True, timeout=60, check=False)
+        if done.returncode != 2:
+            raise SystemExit(f"the service ended with status {done.returncode}: {done.stderr[-2000:]}")
+        return done.stderr
+
     def __exit__(self, *_):
         if self.process and self.process.poll() is None:
             self.process.kill()
@@ -86,14 +93,15 @@ class Service:
             with contextlib.suppress(ProcessLookupError):  # it may end by itself
                 os.kill(pid, signal.SIGKILL)
 
+    def serve_command(self):
+        return [*self.prefix, "env", f"HOME={self.folder}", self.program, "serve", "--data-dir", str(self.folder / "data"),
+                "--listen", f"127.0.0.1:{self.port}", *self.arguments]
+
     def start(self):
         with open(self.folder / "log", "ab") as log:
-            self.process = subprocess.Popen(
-                [*self.prefix, "env", f"HOME={self.folder}", self.program, "serve", "--data-dir",
-                 str(self.folder / "data"), "--listen", f"127.0.0.1:{self.port}", *self.arguments],
-                stdout=subprocess.PIPE, stderr=log, cwd=self.folder, text=True)
+            self.process = subprocess.Popen(self.serve_command(), stdout=subprocess.PIPE, stderr=log, cwd=self.folder, text=True)
         line = self.process.stdout.readline()
-        if "http://" not in line:
+        if "://" not in line:
             raise SystemExit(f"the service did not start: {(self.folder / 'log').read_text()[-2000:]}")
         self.port = int(line.strip().rsplit(":", 1)[1])
 

@@ -17,20 +17,31 @@ Error file_error(int error) {
   return {ErrorCode::unavailable, std::string("the temporary file: ").append(std::strerror(error))};
 }
 
+std::string folder_for_files() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  return error ? "/tmp" : folder.string();
+}
+
 }  // namespace
 
 Result<TemporaryFile> TemporaryFile::make() {
-  std::error_code error;
-  std::string folder = std::filesystem::temp_directory_path(error).string();
-  if (error) folder = "/tmp";
+  const std::string folder = folder_for_files();
   const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (unnamed >= 0) return TemporaryFile(unnamed);
-  std::string name =
-      folder + "/watertight-XXXXXX";  // not every file system has files without names
+  return make({});  // not every file system has files without names
+}
+
+Result<TemporaryFile> TemporaryFile::make(
+    const std::function<Status(const std::string& path)>& open) {
+  std::string name = folder_for_files() + "/watertight-XXXXXX";
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
   if (named < 0) return file_error(errno);
+  TemporaryFile file(named);
+  Status opened = open ? open(name) : Done{};
   ::unlink(name.c_str());
-  return TemporaryFile(named);
+  if (!opened) return std::move(opened).error();
+  return file;
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -46,6 +57,13 @@ Status TemporaryFile::append(ByteView bytes) {
     size_ += static_cast<std::uint64_t>(count);
     bytes = bytes.subspan(static_cast<std::size_t>(count));
   }
+  return Done{};
+}
+
+Status TemporaryFile::measure() {
+  const off_t end = ::lseek(descriptor_, 0, SEEK_END);
+  if (end < 0) return file_error(errno);
+  size_ = static_cast<std::uint64_t>(end);
   return Done{};
 }
 

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <utility>
 
 #include "base/bytes.h"
@@ -18,6 +20,9 @@ class TemporaryFile {
   /// A new, empty file in the folder for temporary files (TMPDIR, else /tmp). Errors: unavailable
   /// with the system's reason.
   static Result<TemporaryFile> make();
+  /// The same, for a library that writes files by their name: the file has a name while `open`
+  /// gets it. After the library's last write call measure(). Errors: besides, those of `open`.
+  static Result<TemporaryFile> make(const std::function<Status(const std::string& path)>& open);
   ~TemporaryFile();
   TemporaryFile(TemporaryFile&& other) noexcept
       : descriptor_(std::exchange(other.descriptor_, -1)), size_(other.size_) {}
@@ -33,6 +38,8 @@ class TemporaryFile {
   /// The `count` bytes from `offset` on, which must be there. Errors: unavailable.
   Result<Bytes> read(std::uint64_t offset, std::size_t count) const;
   std::uint64_t size() const { return size_; }
+  /// Learns how long the file has become by the writes of others. Errors: unavailable.
+  Status measure();
 
  private:
   explicit TemporaryFile(int descriptor) : descriptor_(descriptor) {}

@@ -3,6 +3,7 @@
 // The command export.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "cli/outputs/output_files.h"
 #include "cli/terminal/printable.h"
 #include "files/inputs.h"
+#include "geopackage/collection_file.h"
 #include "pipeline/export.h"
 #include "pipeline/stored/attributes.h"
 
@@ -30,10 +32,14 @@ class ExportRun {
 
   Exit run() {
     const bool is_container = command_.output == "-" || command_.output.ends_with(".wt");
-    if (!is_container && !is_sequence(command_.output)) {
-      return fail(command_.output,
-                  {ErrorCode::unsupported,
-                   "export writes Watertight files (.wt) and CityJSONSeq (.jsonl)"});
+    const bool is_package = command_.output.ends_with(".gpkg");
+    if (!is_container && !is_package && !is_sequence(command_.output)) {
+      return fail(command_.output, {ErrorCode::unsupported,
+                                    "export writes Watertight files (.wt), CityJSONSeq (.jsonl) "
+                                    "and GeoPackages (.gpkg)"});
+    }
+    if (!command_.lod.empty() && !is_package) {
+      return fail("--lod", {ErrorCode::invalid_argument, "only a GeoPackage has one level"});
     }
     // As root, opening a private cluster gives up the right to write where root can.
     const bool gives_up_rights = ::geteuid() == 0 && command_.store.database_url.empty();
@@ -43,8 +49,9 @@ class ExportRun {
     if (const Status read = read_conditions(); !read) return fail("--where", read.error());
     const auto opened = open_store(command_.store);
     if (!opened) return fail("store", opened.error());
-    const Exit exit =
-        is_container ? write_container(*opened->store) : write_sequences(*opened->store);
+    const Exit exit = is_container ? write_container(*opened->store)
+                      : is_package ? write_package(*opened->store)
+                                   : write_sequences(*opened->store);
     if (exit != Exit::valid) return exit;
     if (const Status status = files_->commit(); !status) return fail("export", status.error());
     for (const std::string& sentence : sentences_) {
@@ -67,6 +74,8 @@ class ExportRun {
   }
 
   Status read_conditions() {
+    if (command_.where.empty()) return Done{};
+    std::vector<store::AttributeCondition> conditions;
     for (const std::string& text : command_.where) {
       const std::size_t sign = text.find('=');
       if (sign == std::string::npos) {
@@ -74,8 +83,9 @@ class ExportRun {
       }
       auto condition = pipeline::condition_of(text.substr(0, sign), text.substr(sign + 1));
       if (!condition) return std::move(condition).error();
-      where_.push_back(*std::move(condition));
+      conditions.push_back(*std::move(condition));
     }
+    filter_ = store::filter_of(conditions);
     return Done{};
   }
 
@@ -83,11 +93,30 @@ class ExportRun {
     pipeline::ContainerOptions options;
     options.purpose = *pipeline::file_purpose_named(command_.purpose);
     auto exporting = pipeline::CollectionExport::start(
-        store, command_.collection, pipeline::ExportFormat::container, options, scope_, where_);
+        store, command_.collection, pipeline::ExportFormat::container, options, scope_, filter_);
     if (!exporting) return fail(command_.collection, exporting.error());
     const Exit exit = write(*exporting, 0);
     if (exit == Exit::valid) sentences_.push_back(counts_of(*exporting) + " written");
     return exit;
+  }
+
+  Exit write_package(SolidStore& store) {
+    std::optional<std::string> lod;
+    if (!command_.lod.empty()) lod = command_.lod;
+    const auto made =
+        geopackage::collection_file(store, command_.collection, {scope_, filter_, std::move(lod)});
+    if (!made) return fail(command_.collection, made.error());
+    constexpr std::uint64_t kPiece = 1U << 20U;
+    for (std::uint64_t at = 0; at < made->file.size(); at += kPiece) {
+      const auto count = static_cast<std::size_t>(std::min(kPiece, made->file.size() - at));
+      const auto bytes = made->file.read(at, count);
+      if (!bytes) return fail(command_.output, bytes.error());
+      const Status written = files_->write(0, as_text(*bytes));
+      if (!written) return fail(files_->name(0), written.error());
+    }
+    sentences_.push_back(quantity(made->features, "feature") + " and " +
+                         quantity(made->findings, "finding") + " written");
+    return Exit::valid;
   }
 
   Exit write_sequences(SolidStore& store) {
@@ -98,7 +127,7 @@ class ExportRun {
       const Status added = i == 0 ? Status(Done{}) : files_->add();
       if (!added) return fail(files_->name(i), added.error());
       auto exporting = pipeline::CollectionExport::start_sequence(store, command_.collection, plan,
-                                                                  i, scope_, where_);
+                                                                  i, scope_, filter_);
       if (!exporting) return fail(command_.collection, exporting.error());
       const Exit exit = write(*exporting, i);
       if (exit != Exit::valid) return exit;
@@ -148,7 +177,7 @@ class ExportRun {
 
   const ExportCommand& command_;
   const pipeline::ExportScope scope_;
-  std::vector<store::AttributeCondition> where_;
+  std::optional<store::Filter> filter_;
   std::optional<OutputFiles> files_;
   std::vector<std::string> sentences_;
 };

@@ -24,12 +24,12 @@ void append(Bytes& bytes, ByteView more) { bytes.insert(bytes.end(), more.begin(
 Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::string& collection,
                                                  ExportFormat format,
                                                  const ContainerOptions& options, ExportScope scope,
-                                                 std::vector<store::AttributeCondition> where) {
+                                                 std::optional<store::Filter> filter) {
   if (const auto found = store.collection(collection); !found) return found.error();
   CollectionExport started(store, collection);
   started.scope_ = scope;
   if (format == ExportFormat::container) {
-    started.where_ = std::move(where);
+    started.filter_ = std::move(filter);
     started.container_.emplace(options);
     return started;
   }
@@ -43,12 +43,14 @@ Result<CollectionExport> CollectionExport::start(SolidStore& store, const std::s
                      "); a Watertight file (.wt) holds all"};
   }
   return start_sequence(store, collection, std::make_shared<SequencePlan>(*std::move(plan)), 0,
-                        scope, std::move(where));
+                        scope, std::move(filter));
 }
 
-Result<CollectionExport> CollectionExport::start_sequence(
-    SolidStore& store, const std::string& collection, std::shared_ptr<const SequencePlan> plan,
-    std::size_t sequence, ExportScope scope, std::vector<store::AttributeCondition> where) {
+Result<CollectionExport> CollectionExport::start_sequence(SolidStore& store,
+                                                          const std::string& collection,
+                                                          std::shared_ptr<const SequencePlan> plan,
+                                                          std::size_t sequence, ExportScope scope,
+                                                          std::optional<store::Filter> filter) {
   if (sequence >= plan->sequences().size()) {
     return Error{ErrorCode::invalid_argument, "collection '" + collection + "' has " +
                                                   quantity(plan->sequences().size(), "sequence")};
@@ -56,7 +58,7 @@ Result<CollectionExport> CollectionExport::start_sequence(
   if (const auto found = store.collection(collection); !found) return found.error();
   CollectionExport started(store, collection);
   started.scope_ = scope;
-  started.where_ = std::move(where);
+  started.filter_ = std::move(filter);
   started.plan_ = std::move(plan);
   started.sequence_ = sequence;
   return started;
@@ -66,11 +68,11 @@ Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
   Bytes bytes;
   const std::size_t enough = is_first_ ? 1 : kWorthSending;
   while (bytes.size() < enough && !is_last_) {
-    auto batch = store_->walk(collection_, is_first_ ? kFirstBatch : kBatch, after_, where_);
+    auto batch = store_->walk(collection_, is_first_ ? kFirstBatch : kBatch, after_, filter_);
     if (!batch) return std::move(batch).error();
-    if (is_first_ && batch->features.empty() && !where_.empty()) {
+    if (is_first_ && batch->features.empty() && filter_) {
       return Error{ErrorCode::not_found,
-                   "no feature of collection '" + collection_ + "' has these values"};
+                   "no feature of collection '" + collection_ + "' is selected"};
     }
     if (is_first_ && batch->features.empty()) {
       return Error{ErrorCode::not_found, "collection '" + collection_ + "' has no features"};

@@ -38,20 +38,20 @@ struct Exported {
 /// An export that is under way. The store must outlive it. Not thread-safe.
 class CollectionExport {
  public:
-  /// Starts an export, of the features for which all conditions hold. Errors: those of the store;
+  /// Starts an export, of the features for which the filter is true. Errors: those of the store;
   /// not_found (no collection, no features; but an export of what is not proven may be empty);
   /// those of SequencePlan::make(); unsupported when the features need several sequences.
   static Result<CollectionExport> start(SolidStore& store, const std::string& collection,
                                         ExportFormat format, const ContainerOptions& options = {},
                                         ExportScope scope = ExportScope::all,
-                                        std::vector<store::AttributeCondition> where = {});
+                                        std::optional<store::Filter> filter = {});
   /// Starts the export of one sequence of a plan, by its number. Errors: those of the store;
   /// invalid_argument when the plan has no such sequence.
   static Result<CollectionExport> start_sequence(SolidStore& store, const std::string& collection,
                                                  std::shared_ptr<const SequencePlan> plan,
                                                  std::size_t sequence,
                                                  ExportScope scope = ExportScope::all,
-                                                 std::vector<store::AttributeCondition> where = {});
+                                                 std::optional<store::Filter> filter = {});
 
   /// The next bytes of the file: a batch of a sequence, some blocks of a Watertight file; the first
   /// call returns after one feature. Empty after the last ones. Errors: those of the store;
@@ -73,7 +73,7 @@ class CollectionExport {
   SolidStore* store_;
   std::string collection_;
   ExportScope scope_ = ExportScope::all;
-  std::vector<store::AttributeCondition> where_;
+  std::optional<store::Filter> filter_;
   std::optional<ContainerWriter> container_;  // none for a sequence
   std::shared_ptr<const SequencePlan> plan_;  // of a sequence
   std::size_t sequence_ = 0;                  // its number in the plan

@@ -170,6 +170,19 @@ void to_earth_centred(std::span<Position> positions) {
 
 bool is_north_first(std::uint32_t srid) { return library().is_north_first(srid); }
 
+Result<SystemText> text_of(std::uint32_t srid) {
+  PJ_CONTEXT* context = library().context();
+  const Object crs(proj_create_from_database(context, "EPSG", std::to_string(srid).c_str(),
+                                             PJ_CATEGORY_CRS, 0, nullptr));
+  if (!crs) {
+    return Error{ErrorCode::unsupported, "EPSG:" + std::to_string(srid) + " is not known"};
+  }
+  const auto text = [](const char* result) { return std::string(result == nullptr ? "" : result); };
+  return SystemText{text(proj_get_name(crs.get())),
+                    text(proj_as_wkt(context, crs.get(), PJ_WKT1_GDAL, nullptr)),
+                    text(proj_as_wkt(context, crs.get(), PJ_WKT2_2019, nullptr))};
+}
+
 Result<Rectangle> bounds_of(std::uint32_t srid, System system, const Rectangle& rectangle) {
   return bounds(srid, system, PJ_FWD, rectangle);
 }

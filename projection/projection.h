@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "base/result.h"
 
@@ -43,6 +44,17 @@ void to_earth_centred(std::span<Position> positions);
 /// its coordinates are written northing (or latitude) first. False for unknown codes. Cost: as
 /// transform().
 bool is_north_first(std::uint32_t srid);
+
+/// The definition of a reference system in the two versions of well-known text (OGC 12-063).
+struct SystemText {
+  std::string name;
+  std::string first;   // WKT 1, as GDAL writes it; "" for a system that it cannot describe
+  std::string second;  // WKT 2:2019
+};
+
+/// The definition of EPSG system `srid`. Errors: unsupported for a code that PROJ does not know.
+/// Cost: as transform().
+Result<SystemText> text_of(std::uint32_t srid);
 
 /// A rectangle around the part of the plane that a rectangle of EPSG system `srid` covers in the
 /// other system: its edges are followed. Errors: those of transform().

@@ -21,11 +21,13 @@ inline constexpr std::string_view kHtml = "text/html";
 inline constexpr std::string_view kHtmlPage = "text/html; charset=utf-8";  // as answers name it
 inline constexpr std::string_view kGeoJson = "application/geo+json";
 inline constexpr std::string_view kJsonFg = "application/vnd.ogc.fg+json";
+inline constexpr std::string_view kMergePatch = "application/merge-patch+json";
 inline constexpr std::string_view kCityJson = "application/city+json";
 inline constexpr std::string_view kCityJsonSeq = "application/city+json-seq";
 inline constexpr std::string_view kObj = "model/obj";
 inline constexpr std::string_view kGltf = "model/gltf-binary";
 inline constexpr std::string_view kBlob = "application/vnd.watertight.blob";
+inline constexpr std::string_view kGeoPackage = "application/geopackage+sqlite3";
 inline constexpr std::string_view kContainer = "application/vnd.watertight";
 
 /// The bytes of a body, or of what is stored of a feature, that take a moment to compute with.
@@ -55,15 +57,15 @@ struct Route {
 /// The parameters of a list of items; others are names of attributes.
 inline constexpr std::string_view kItemParameters[] = {
     "f",   "limit", "after",  "bbox",        "bbox-crs",   "datetime", "proven",
-    "crs", "lod",   "filter", "filter-lang", "filter-crs", "sortby"};
+    "crs", "lod",   "filter", "filter-lang", "filter-crs", "sortby",   "profile"};
 
 /// The parameters of a document that is judged, without and with storing it.
 inline constexpr std::string_view kValidateParameters[] = {
     "f",       "surfaces",       "planarity", "planarity-angle",
     "overlap", "exact-overlaps", "proof",     "strict"};
 inline constexpr std::string_view kReportParameters[] = {
-    "f",       "proven",         "surfaces", "planarity", "planarity-angle",
-    "overlap", "exact-overlaps", "proof",    "strict"};
+    "f",     "proven", "surfaces", "planarity",   "planarity-angle", "overlap", "exact-overlaps",
+    "proof", "strict", "filter",   "filter-lang", "filter-crs",      "bbox",    "bbox-crs"};
 inline constexpr std::string_view kSubmitParameters[] = {
     "f",       "invalid",        "surfaces", "planarity", "planarity-angle",
     "overlap", "exact-overlaps", "proof",    "strict"};
@@ -96,6 +98,8 @@ Response put_item(const RoutedRequest& request);
 Response patch_item(const RoutedRequest& request);
 Response delete_item(const RoutedRequest& request);
 Response get_queryables(const RoutedRequest& request);
+Response get_sortables(const RoutedRequest& request);
+Response get_schema(const RoutedRequest& request);
 Response get_attributes(const RoutedRequest& request);
 Response put_attributes(const RoutedRequest& request);
 Response get_tileset(const RoutedRequest& request);

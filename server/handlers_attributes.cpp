@@ -4,22 +4,11 @@
 #include <algorithm>
 #include <memory>
 
-#include "server/features/links.h"
+#include "server/features/schemas.h"
 #include "server/json_answers.h"
 
 namespace watertight::server {
 namespace {
-
-constexpr std::string_view kSchemaType = "application/schema+json";
-
-/// The JSON types of the values of an attribute.
-Json types_of(const store::ChosenAttribute& attribute) {
-  Json types = Json::array();
-  if (attribute.has_numbers) types.push_back("number");
-  if (attribute.has_texts) types.push_back("string");
-  if (attribute.has_truths) types.push_back("boolean");
-  return types;
-}
 
 Response attributes_response(SolidStore& store, const std::string& collection) {
   const auto chosen = store.attributes(collection);
@@ -28,7 +17,7 @@ Response attributes_response(SolidStore& store, const std::string& collection) {
   for (const store::ChosenAttribute& attribute : *chosen) {
     json["attributes"].push_back({{"name", attribute.name},
                                   {"complete", attribute.is_complete()},
-                                  {"types", types_of(attribute)}});
+                                  {"types", json_types(attribute)}});
   }
   return json_response(json);
 }
@@ -67,38 +56,6 @@ Status choose(SolidStore& store, const std::string& collection, std::vector<std:
 }
 
 }  // namespace
-
-Response get_queryables(const RoutedRequest& request) {
-  if (const std::string* format = request.target.parameter("f"); format && *format != "json") {
-    return refuse(406, "not-acceptable", "queryables are a JSON Schema");
-  }
-  if (!request.target.parameter("f") &&
-      !negotiate(request.request.header("accept"), {kSchemaType, kJson})) {
-    return refuse(406, "not-acceptable", "queryables are a JSON Schema");
-  }
-  const std::string& id = request.target.segments[1];
-  const auto chosen = request.service.store->attributes(id);
-  if (!chosen) return to_response(to_problem(chosen.error()));
-  Json json{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-            {"$id", base_url(request) + "/collections/" + percent_encode(id) + "/queryables"},
-            {"type", "object"},
-            {"title", id},
-            {"properties",
-             {{"geometry",
-               {{"title", "the box of a feature, for S_INTERSECTS in a filter"},
-                {"format", "geometry-any"},
-                {"x-ogc-role", "primary-geometry"}}}}},
-            {"additionalProperties", false}};
-  for (const store::ChosenAttribute& attribute : *chosen) {
-    if (!attribute.is_complete()) continue;
-    Json property{{"title", attribute.name}};
-    const Json types = types_of(attribute);
-    if (types.size() == 1) property["type"] = types[0];
-    if (types.size() > 1) property["type"] = types;
-    json["properties"][attribute.name] = property;
-  }
-  return json_response(json, kSchemaType);
-}
 
 Response get_attributes(const RoutedRequest& request) {
   if (auto refusal = json_only(request)) return *std::move(refusal);

@@ -9,8 +9,10 @@
 #include <utility>
 #include <variant>
 
+#include "geopackage/collection_file.h"
 #include "pipeline/export.h"
 #include "server/export_files.h"
+#include "server/features/filters.h"
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
 #include "server/items/ranges.h"
@@ -23,12 +25,14 @@ struct FileFormat {
   std::string_view parameter;  // value of f=
   std::string_view type;
   std::string_view ending;
-  pipeline::ExportFormat format;
+  /// Nothing for a GeoPackage, which has to be whole before its first byte can be sent.
+  std::optional<pipeline::ExportFormat> format;
 };
 
-constexpr std::array<FileFormat, 2> kFiles{
+constexpr std::array<FileFormat, 3> kFiles{
     {{"wt", kContainer, ".wt", pipeline::ExportFormat::container},
-     {"cityjsonseq", kCityJsonSeq, ".city.jsonl", pipeline::ExportFormat::sequence}}};
+     {"cityjsonseq", kCityJsonSeq, ".city.jsonl", pipeline::ExportFormat::sequence},
+     {"gpkg", kGeoPackage, ".gpkg", std::nullopt}}};
 
 constexpr std::uint64_t kPiece = 1U << 20U;  // bytes of a kept file that are sent at a time
 
@@ -39,7 +43,8 @@ const FileFormat* chosen_file(const RoutedRequest& request) {
     }
     return nullptr;
   }
-  const auto offer = negotiate(request.request.header("accept"), {kFiles[0].type, kFiles[1].type});
+  const auto offer =
+      negotiate(request.request.header("accept"), {kFiles[0].type, kFiles[1].type, kFiles[2].type});
   return offer ? &kFiles[*offer] : nullptr;
 }
 
@@ -78,12 +83,18 @@ struct ExportRequest {
   const FileFormat* file;
   pipeline::ExportScope scope;
   std::optional<std::size_t> part;  // the number of the sequence, from 1
+  std::optional<std::string> lod;   // of a GeoPackage
+  std::optional<store::Filter> filter;
+  std::string selection;  // selection_name()
   store::StoredCollection collection;
   Request message;
 
   std::string etag() const {
     std::string representation(file->parameter);
     if (scope == pipeline::ExportScope::proven) representation += "-proven";
+    if (scope == pipeline::ExportScope::unproven) representation += "-unproven";
+    if (lod) representation += "-lod" + percent_encode(*lod);
+    representation += selection;
     if (part) representation += "-part-" + std::to_string(*part);
     return etag_of_state(collection.state, representation);
   }
@@ -155,7 +166,7 @@ ExportOrRefusal start_sequence(const ExportRequest& request, const CancelPoll& i
   if (!request.part && plan->sequences().size() > 1) return refuse_parts(request, *plan);
   const std::size_t number = request.part.value_or(1) - 1;
   auto started = pipeline::CollectionExport::start_sequence(store, request.collection.id, plan,
-                                                            number, request.scope);
+                                                            number, request.scope, request.filter);
   if (!started) return refuse_export(started.error());
   StartedExport exporting{*std::move(started), {}};
   auto losses = losses_field(plan->sequences()[number]);
@@ -168,8 +179,8 @@ ExportOrRefusal export_for(const ExportRequest& request, const CancelPoll& is_ca
     return start_sequence(request, is_cancelled);
   }
   auto started = pipeline::CollectionExport::start(
-      *request.service.store, request.collection.id, request.file->format,
-      {.layout = pipeline::SolidLayout::blobs}, request.scope);
+      *request.service.store, request.collection.id, *request.file->format,
+      {.layout = pipeline::SolidLayout::blobs}, request.scope, request.filter);
   if (!started) return refuse_export(started.error());
   return StartedExport{*std::move(started), {}};
 }
@@ -195,43 +206,61 @@ Response streamed(const ExportRequest& request, const CancelPoll& is_cancelled) 
   return response;
 }
 
-/// Makes the whole file, of which a range is wanted: its length has to be known. Errors:
-/// unavailable when the collection changes meanwhile, or the disk has no room; limit_exceeded when
-/// there are too many bytes of such files; unsupported when there is no such file, which streamed()
-/// explains; cancelled.
-Result<ExportFiles::File> whole_file(const ExportRequest& request, const CancelPoll& is_cancelled) {
+/// Makes the bytes of an export as a file. Errors: unsupported when there is no such file, which
+/// streamed() explains; limit_exceeded when there are too many bytes of such files; those of
+/// CollectionExport::next() and geopackage::collection_file().
+Result<TemporaryFile> make_file(const ExportRequest& request, const CancelPoll& is_cancelled) {
   ExportFiles& files = *request.service.export_files;
+  const auto has_room = [&](std::uint64_t bytes) { return files.make_room(bytes); };
+  if (!request.file->format) {
+    auto made = geopackage::collection_file(*request.service.store, request.collection.id,
+                                            {request.scope, request.filter, request.lod},
+                                            is_cancelled, has_room);
+    if (!made) return std::move(made).error();
+    return std::move(made->file);
+  }
   auto started = export_for(request, is_cancelled);
   if (!std::holds_alternative<StartedExport>(started)) {
     return Error{ErrorCode::unsupported, "there is no such file"};
   }
   pipeline::CollectionExport* const exporting = &std::get<StartedExport>(started).exporting;
   auto file = TemporaryFile::make();
-  if (!file) return std::move(file).error();
+  if (!file) return file;
   while (!exporting->is_at_end()) {
     const auto part = exporting->next(is_cancelled);
     if (!part) return part.error();
-    if (!files.make_room(file->size() + part->size())) {
+    if (!has_room(file->size() + part->size())) {
       return Error{ErrorCode::limit_exceeded, "no room for the file of the export"};
     }
     if (Status added = file->append(*part); !added) return std::move(added).error();
   }
+  return file;
+}
+
+/// Makes the whole file, whose length has to be known for ranges. Errors: those of make_file();
+/// unavailable when the collection changes meanwhile.
+Result<ExportFiles::File> whole_file(const ExportRequest& request, const CancelPoll& is_cancelled) {
+  auto file = make_file(request, is_cancelled);
+  if (!file) return std::move(file).error();
   const auto after = request.service.store->collection(request.collection.id);
   if (!after) return after.error();
   if (after->state != request.collection.state) {
     return Error{ErrorCode::unavailable, "the collection changed while its file was made"};
   }
-  return files.keep(request.key(), *std::move(file));
+  return request.service.export_files->keep(request.key(), *std::move(file));
 }
 
-/// The range of the file that the request wants, read piece by piece while it is sent.
+/// The file, or the range of it that the request wants, read piece by piece while it is sent.
 Response part_of(const ExportFiles::File& file, const ExportRequest& request) {
   const WantedRange wanted = wanted_range(request.message, request.etag(), file->size());
   if (wanted.kind == WantedRange::Kind::unsatisfiable) return beyond(file->size());
-  Response response{206, std::string(request.file->type), "", headers_of(request)};
-  response.headers.push_back(content_range(wanted.part, file->size()));
-  response.rest = [file, next = wanted.part.first,
-                   end = wanted.part.last + 1](const CancelPoll&) mutable -> Result<std::string> {
+  const bool is_part = wanted.kind == WantedRange::Kind::part;
+  Response response{is_part ? 206U : 200U, std::string(request.file->type), "",
+                    headers_of(request)};
+  if (is_part) response.headers.push_back(content_range(wanted.part, file->size()));
+  const std::uint64_t first = is_part ? wanted.part.first : 0;
+  const std::uint64_t end = is_part ? wanted.part.last + 1 : file->size();
+  response.rest = [file, next = first, end](const CancelPoll&) mutable -> Result<std::string> {
     const auto count = static_cast<std::size_t>(std::min(kPiece, end - next));
     const auto bytes = file->read(next, count);
     if (!bytes) return bytes.error();
@@ -241,24 +270,34 @@ Response part_of(const ExportFiles::File& file, const ExportRequest& request) {
   return response;
 }
 
-/// Answers a request for a range from a kept file, or by work that makes and keeps the file.
-Response ranged(const ExportRequest& request) {
+/// The answer where there is no file: a service may ignore a range (RFC 9110, section 14.2).
+Response without_file(const ExportRequest& request, const Error& error,
+                      const CancelPoll& is_cancelled) {
+  const bool is_possible = request.file->format.has_value();
+  if (is_possible &&
+      (error.code == ErrorCode::limit_exceeded || error.code == ErrorCode::unsupported)) {
+    return streamed(request, is_cancelled);
+  }
+  if (error.code == ErrorCode::limit_exceeded) {
+    return refuse(413, "limit-exceeded",
+                  "the GeoPackage has more bytes than the service keeps in files; `watertight "
+                  "export` writes it");
+  }
+  return refuse_export(error);
+}
+
+/// Answers from a kept file, or by work that makes and keeps the file.
+Response from_file(const ExportRequest& request) {
   ExportFiles* const files = request.service.export_files;
   if (auto file = files->find(request.key())) return part_of(file, request);
   Response response;
-  response.further = std::make_shared<const FurtherWork>(
-      FurtherWork{Lane::computing, request.key(), [request, files](const CancelPoll& is_cancelled) {
-                    // A request for the same file may have made it meanwhile.
-                    if (auto file = files->find(request.key())) return part_of(file, request);
-                    const auto made = whole_file(request, is_cancelled);
-                    if (made) return part_of(*made, request);
-                    // A service may ignore a range (RFC 9110, section 14.2).
-                    if (made.error().code == ErrorCode::limit_exceeded ||
-                        made.error().code == ErrorCode::unsupported) {
-                      return streamed(request, is_cancelled);
-                    }
-                    return refuse_export(made.error());
-                  }});
+  response.further = std::make_shared<const FurtherWork>(FurtherWork{
+      Lane::computing, request.key(), [request, files](const CancelPoll& is_cancelled) {
+        // A request for the same file may have made it meanwhile.
+        if (auto file = files->find(request.key())) return part_of(file, request);
+        const auto made = whole_file(request, is_cancelled);
+        return made ? part_of(*made, request) : without_file(request, made.error(), is_cancelled);
+      }});
   return response;
 }
 
@@ -268,29 +307,47 @@ Response get_export(const RoutedRequest& request) {
   const FileFormat* file = chosen_file(request);
   if (file == nullptr) {
     return refuse(406, "not-acceptable",
-                  "a collection is available as application/vnd.watertight (f=wt) or "
-                  "application/city+json-seq (f=cityjsonseq)");
+                  "a collection is available as application/vnd.watertight (f=wt), "
+                  "application/city+json-seq (f=cityjsonseq) or application/geopackage+sqlite3 "
+                  "(f=gpkg)");
   }
   const auto is_proven = proof_of_request(request.target);
   if (!is_proven) return to_response(to_problem(is_proven.error()));
-  if (*is_proven == false) {
-    return refuse(400, "invalid-argument", "an export has all features, or with proven=true those");
+  auto scope = pipeline::ExportScope::all;
+  if (*is_proven) {
+    scope = **is_proven ? pipeline::ExportScope::proven : pipeline::ExportScope::unproven;
   }
-  const auto scope = *is_proven ? pipeline::ExportScope::proven : pipeline::ExportScope::all;
   const auto part = part_of_request(request.target, *file);
   if (!part) return to_response(to_problem(part.error()));
+  std::optional<std::string> lod;
+  if (const std::string* wanted = request.target.parameter("lod")) lod = *wanted;
+  if (lod && file->format) {
+    return refuse(400, "invalid-argument", "only f=gpkg has one level of detail (lod)");
+  }
   auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  const ExportRequest wanted{request.service,        file,           scope, *part,
-                             *std::move(collection), request.request};
+  auto filter = selection_of_request(request.target, *collection);
+  if (!filter) return to_response(to_problem(filter.error()));
+  const ExportRequest wanted{request.service,
+                             file,
+                             scope,
+                             *part,
+                             std::move(lod),
+                             *std::move(filter),
+                             selection_name(request.target),
+                             *std::move(collection),
+                             request.request};
   auto unneeded = unless_needed(request.request, wanted.etag());
   if (unneeded) return *std::move(unneeded);
   // With a size of "all that there are", any range that is understood is a part.
   const auto range = wanted_range(request.request, wanted.etag(), UINT64_MAX);
   const bool has_range = range.kind == WantedRange::Kind::part;
-  return has_range && request.service.export_files != nullptr
-             ? ranged(wanted)
-             : streamed(wanted, request.is_cancelled);
+  const bool can_keep = request.service.export_files != nullptr;
+  if (!file->format && !can_keep) {
+    return refuse(503, "unavailable", "the service keeps no files");
+  }
+  return can_keep && (has_range || !file->format) ? from_file(wanted)
+                                                  : streamed(wanted, request.is_cancelled);
 }
 
 }  // namespace watertight::server

@@ -5,6 +5,7 @@
 
 #include "pipeline/container.h"
 #include "server/access/gate.h"
+#include "server/documents/submission.h"
 #include "server/features/answer_coding.h"
 #include "server/features/cors.h"
 #include "server/handlers.h"
@@ -88,12 +89,27 @@ std::optional<Response> refusal_of(const Target& target, const Route& route) {
   return std::nullopt;
 }
 
+/// What a path allows, and the types of bodies that it takes to make and change features (OGC API -
+/// Common, part 5).
+Response options_of(const Target& target, const std::string& allowed) {
+  Response response{200, "", "", {{"Allow", allowed}}};
+  for (const Route& route : routes()) {
+    if (!matches(route, target)) continue;
+    if (route.handler == post_items) {
+      response.headers.push_back({"Accept-Post", storable_types()});
+    } else if (route.handler == patch_item) {
+      response.headers.push_back({"Accept-Patch", std::string(kMergePatch)});
+    }
+  }
+  return response;
+}
+
 Response unrouted(const Request& request, const Target& target) {
   const std::string allowed = allowed_methods(target);
   if (allowed.empty()) {
     return refuse(404, "not-found", "there is nothing at this path; see /api");
   }
-  if (request.method == "OPTIONS") return Response{204, "", "", {{"Allow", allowed}}};
+  if (request.method == "OPTIONS") return options_of(target, allowed);
   Problem problem{405, "method-not-allowed", "this path allows " + allowed, {}, {}, {}, {}};
   problem.headers.push_back({"Allow", allowed});
   return to_response(problem);
@@ -143,6 +159,8 @@ const std::vector<Route>& collection_routes() {
       {"DELETE", "/collections/{collectionId}", small, admin, delete_collection, {}},
       {"POST", "/collections/{collectionId}/recount", small, write, post_recount, {}},
       {"GET", "/collections/{collectionId}/queryables", reading, read, get_queryables, {"f"}},
+      {"GET", "/collections/{collectionId}/sortables", reading, read, get_sortables, {"f"}},
+      {"GET", "/collections/{collectionId}/schema", computing, read, get_schema, {"f"}},
       {"GET", "/collections/{collectionId}/attributes", reading, read, get_attributes, {"f"}},
       {"PUT", "/collections/{collectionId}/attributes", small, write, put_attributes, {}},
       {"GET",
@@ -150,7 +168,7 @@ const std::vector<Route>& collection_routes() {
        computing,
        read,
        get_export,
-       {"f", "proven", "part"}},
+       {"f", "proven", "part", "lod", "filter", "filter-lang", "filter-crs", "bbox", "bbox-crs"}},
       {"GET",
        "/collections/{collectionId}/report",
        computing,
@@ -188,7 +206,7 @@ const std::vector<Route>& item_routes() {
        reading,
        read,
        get_item,
-       {"f", "solid", "crs", "lod"}},
+       {"f", "solid", "crs", "lod", "profile"}},
       {"PUT",
        "/collections/{collectionId}/items/{itemId}",
        computing,
@@ -299,9 +317,22 @@ void count(const Service& service, const AnsweredRequest& answered) {
 
 namespace {
 
+/// The refusal of a body that makes or changes a feature and states no type.
+std::optional<Response> unless_typed(const Route* route, const Request& request) {
+  const bool needs_type =
+      route != nullptr &&
+      (route->handler == post_items || route->handler == put_item || route->handler == patch_item);
+  if (!needs_type || request.header("content-type") != nullptr) return std::nullopt;
+  const auto target = parse_target(request.target);
+  if (target->parameter("f") != nullptr) return std::nullopt;
+  return refuse(400, "invalid-argument",
+                "the request needs a field Content-Type, which says what its body is");
+}
+
 /// What becomes of the body of a request that the gate has admitted: that of a job goes to a file.
 Admission admit_body(const Service& service, const Request& request, std::string key) {
   const Route* route = route_of(request);
+  if (auto refusal = unless_typed(route, request)) return {std::move(key), std::move(refusal)};
   if (route == nullptr || route->handler != post_job) return {std::move(key)};
   const auto target = parse_target(request.target);
   Admission admission;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,9 @@ struct Filter {
 /// The limits of a filter.
 constexpr std::size_t kMostFilterParts = 200;  // conditions and values in the whole tree
 constexpr std::size_t kDeepestFilter = 32;
+
+/// The filter that is true if all conditions hold.
+Filter filter_of(std::span<const AttributeCondition> conditions);
 
 /// The names of the attributes in a filter, each once.
 std::vector<std::string> names_in(const Filter& filter);

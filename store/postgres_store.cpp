@@ -276,11 +276,13 @@ class PostgresStore final : public SolidStore {
   using SolidStore::walk;
   Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                             const std::string& after,
-                            std::span<const AttributeCondition> where) override {
+                            const std::optional<Filter>& filter) override {
     if (!check_collection_id(collection)) return no_such_collection();
-    if (where.size() > kMostConditions) return too_many_conditions();
+    if (filter) {
+      if (Status checked = check_filter(*filter); !checked) return std::move(checked).error();
+    }
     return read_at_once<FeatureBatch>([&](DatabaseSession& session) {
-      return read_batch(session, collection, limit, after, where, shared_);
+      return read_batch(session, collection, limit, after, filter, shared_);
     });
   }
 

@@ -296,16 +296,16 @@ class SolidStore {
   virtual Result<FeaturePage> list(const FeatureQuery& query) = 0;
   /// The next batch of the features of a collection, in order of their place numbers
   /// (store/rows/place.h: along a Hilbert curve through the centres of their boxes), features
-  /// without a box last, ties by id, bytewise. A batch has at most `limit` (10,000) features, fewer
-  /// when they are large (16 MiB). `after` is FeatureBatch::next, "" at the start. Errors:
-  /// not_found when there is no such collection; invalid_argument for an `after` that no batch
-  /// returned, and as for list().
+  /// without a box last, ties by id, bytewise; with `filter` only those for which it is true. A
+  /// batch has at most `limit` (10,000) features, fewer when they are large (16 MiB). `after` is
+  /// FeatureBatch::next, "" at the start. Errors: not_found when there is no such collection;
+  /// invalid_argument for an `after` that no batch returned, and as for list().
   virtual Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                                     const std::string& after,
-                                    std::span<const AttributeCondition> where) = 0;
+                                    const std::optional<Filter>& filter) = 0;
   Result<FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                             const std::string& after) {
-    return walk(collection, limit, after, {});
+    return walk(collection, limit, after, std::nullopt);
   }
   /// The places of the next features that have a box, in the order of walk(); at most `limit`
   /// (10,000). Errors: as for walk().

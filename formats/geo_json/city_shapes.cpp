@@ -219,6 +219,18 @@ class ShapeBuilder {
   std::unordered_map<std::uint64_t, std::size_t> used_;
 };
 
+/// The double nearest to `value` rounded to so many decimals. A quotient of two doubles that are
+/// whole numbers is the nearest one.
+double nearest_decimal(double value, int decimals) {
+  constexpr int kMostExact = 22;  // 10^22 is the largest power of ten that is a double
+  constexpr double kLargestExact = 9007199254740992;  // 2^53
+  if (decimals > kMostExact) return value;
+  double power = 1;
+  for (int i = 0; i < decimals; ++i) power *= 10;
+  const double units = std::round(value * power);
+  return std::abs(units) < kLargestExact ? units / power : value;
+}
+
 /// The name and value of each attribute of an object.
 void append_attributes(const Json& object, std::vector<std::pair<std::string, std::string>>& out) {
   const Json* attributes = find_member(object, "attributes");
@@ -327,10 +339,12 @@ struct CityFeatureReader::Header {
   Json templates;  // the list of geometries; null without any
   std::vector<Position> template_vertices;
 
+  /// The doubles nearest to the decimals that the transform gives; where it has none, to rounding.
   Position world(const Position& vertex) const {
     Position position;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       position[axis] = vertex[axis] * scale[axis] + translate[axis];
+      if (decimals) position[axis] = nearest_decimal(position[axis], (*decimals)[axis]);
     }
     return position;
   }
@@ -415,6 +429,16 @@ Result<CityFeatureReader> CityFeatureReader::make(std::string_view header, const
     made->template_vertices = positions_of(find_member(*templates, "vertices-templates"));
   }
   return CityFeatureReader(std::move(made));
+}
+
+std::vector<std::pair<std::string, std::string>> city_attributes(std::string_view feature,
+                                                                 std::string_view id,
+                                                                 const Limits& limits) {
+  const auto parsed = parse_json(feature, limits);
+  if (!parsed) return {};
+  const Json* objects = find_member(*parsed, "CityObjects");
+  if (objects == nullptr || !objects->is_object()) return {};
+  return merged_attributes(*objects, id);
 }
 
 Result<CityFeature> CityFeatureReader::read(std::string_view feature, std::string_view id,

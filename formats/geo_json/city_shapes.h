@@ -56,6 +56,12 @@ struct CityFeature {
   std::vector<std::pair<std::string, std::string>> attributes;
 };
 
+/// CityFeature::attributes of a feature, from its text alone (a skeleton or a CityJSONFeature).
+/// Empty for another text. Cost: linear, the text as JSON values.
+std::vector<std::pair<std::string, std::string>> city_attributes(std::string_view feature,
+                                                                 std::string_view id,
+                                                                 const Limits& limits = {});
+
 /// The solids of a feature of any format, without semantics and attributes. Cost: linear.
 CityFeature city_feature_of(const Feature& feature);
 

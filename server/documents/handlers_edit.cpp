@@ -75,7 +75,7 @@ Result<std::string> patched_attributes(const std::string& body) {
   }
   if (!patch["properties"].is_object()) return wrong;
   for (const auto& [name, value] : patch["properties"].items()) {
-    if (name.starts_with(kOwnProperty)) {
+    if (name.starts_with(pipeline::kOwnProperty)) {
       return Error{ErrorCode::invalid_argument,
                    "'" + name + "' is a fact of the service, not an attribute"};
     }

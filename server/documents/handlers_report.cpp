@@ -9,6 +9,7 @@
 #include "server/documents/report_answer.h"
 #include "server/documents/rules.h"
 #include "server/documents/submission.h"
+#include "server/features/filters.h"
 #include "server/items/preconditions.h"
 #include "server/json_answers.h"
 
@@ -76,6 +77,8 @@ Response get_report(const RoutedRequest& request) {
   SolidStore& store = *request.service.store;
   const auto collection = store.collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
+  const auto filter = selection_of_request(request.target, *collection);
+  if (!filter) return to_response(to_problem(filter.error()));
   std::string form(name_of(*kind));
   form.append("-").append(std::to_string(content_hash(as_bytes(request.request.target))));
   const std::string etag = etag_of_state(collection->state, form);
@@ -86,7 +89,7 @@ Response get_report(const RoutedRequest& request) {
   ReportAnswer answer(request.service, *kind, options, surfaces->name);
   for (std::size_t i = 0; i < plan->sequences().size(); ++i) {
     auto sequence =
-        pipeline::CollectionExport::start_sequence(store, collection->id, plan, i, *scope);
+        pipeline::CollectionExport::start_sequence(store, collection->id, plan, i, *scope, *filter);
     if (!sequence) return to_response(to_problem(sequence.error()));
     const Status judged = judge_sequence(request, *std::move(sequence), surfaces->reading, answer);
     if (!judged) return to_response(to_problem(judged.error()));

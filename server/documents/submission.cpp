@@ -87,14 +87,21 @@ bool is_allowed(Format format, AcceptedFormats accepted) {
          std::find(kWithIds.begin(), kWithIds.end(), format) != kWithIds.end();
 }
 
-Problem unsupported_type(AcceptedFormats accepted) {
+/// The media types of bodies that are taken, with commas between them.
+std::string types_of(AcceptedFormats accepted) {
   std::string known;
   for (const FormatName& name : kNames) {
     if (!is_allowed(name.format, accepted) || name.type.empty()) continue;
     known += (known.empty() ? "" : ", ") + std::string(name.type);
   }
   if (accepted == AcceptedFormats::with_ids) known.append(", ").append(kContainer);
-  return Problem{415, "unsupported", "send a body of one of these types: " + known, {}, {}, {}, {}};
+  return known;
+}
+
+Problem unsupported_type(AcceptedFormats accepted) {
+  return Problem{
+      415, "unsupported", "send a body of one of these types: " + types_of(accepted), {}, {}, {},
+      {}};
 }
 
 /// The media type that a request states for its body; "" when it leaves that to the content, as
@@ -241,6 +248,8 @@ Submission container_submission(const RoutedRequest& request) {
       submission.memory);
   return submission;
 }
+
+std::string storable_types() { return types_of(AcceptedFormats::with_ids); }
 
 Problem problem_of_body(const Error& error) {
   Problem problem = to_problem(error);

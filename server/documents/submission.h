@@ -46,6 +46,9 @@ struct Conversion {
 Conversion read_conversion(const RoutedRequest& request, std::optional<Format> to,
                            formats::Surfaces surfaces);
 
+/// The media types of bodies whose features can be stored, with commas between them.
+std::string storable_types();
+
 /// The media type of documents of a format; "application/octet-stream" where there is none.
 std::string_view media_type_of(Format format);
 

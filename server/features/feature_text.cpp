@@ -1,37 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/features/feature_text.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
-#include <vector>
 
 #include "base/json_text.h"
-#include "formats/city_json/city_json.h"
 #include "formats/geo_json/geo_json.h"
 
 namespace watertight::server {
 namespace {
 
-using Properties = std::vector<std::pair<std::string, std::string>>;
-
 constexpr int kDecimalsOfDegrees = 9;  // a tenth of a millimetre
 constexpr int kDecimalsOfMetres = 4;
 constexpr int kMostDecimalsOfHeights = 20;
-constexpr std::size_t kMostReaders = 64;
-
-/// The facts about a feature that the store knows.
-Properties own_properties(const StoredFeature& feature) {
-  const auto add = [](Properties& out, std::string_view name, std::string value) {
-    out.emplace_back(std::string(kOwnProperty).append(name), std::move(value));
-  };
-  Properties properties;
-  add(properties, "type", json_string(feature.type));
-  add(properties, "proven", feature.is_proven() ? "true" : "false");
-  add(properties, "solids", std::to_string(feature.solids.size()));
-  add(properties, "unproven_solids", std::to_string(feature.unproven()));
-  add(properties, "version", std::to_string(feature.version));
-  return properties;
-}
 
 /// Brings the shapes into another system, with as many decimals as its unit needs.
 Status bring_into(PlaceSystem system, std::uint32_t srid, formats::CityShapes& shapes) {
@@ -49,16 +31,29 @@ Status bring_into(PlaceSystem system, std::uint32_t srid, formats::CityShapes& s
   return Done{};
 }
 
-Error damaged(const Error& error) {
-  return {ErrorCode::unavailable, "the stored feature cannot be decoded: " + to_string(error)};
-}
-
 }  // namespace
 
 bool is_large(const StoredFeature& feature) {
   std::size_t bytes = feature.skeleton.bytes.size() + feature.page.size();
   for (const StoredSolid& solid : feature.solids) bytes += solid.blob.size();
   return bytes > kSmallBody;
+}
+
+bool wants_json_fg(const Target& target) {
+  const std::string* list = target.parameter("profile");
+  std::string_view rest = list == nullptr ? std::string_view() : std::string_view(*list);
+  while (!rest.empty()) {
+    const std::string_view name = rest.substr(0, rest.find(','));
+    if (name == "jsonfg" || name == "[ogc-profile:jsonfg]" || name == profile_uri(true))
+      return true;
+    rest.remove_prefix(std::min(name.size() + 1, rest.size()));
+  }
+  return false;
+}
+
+std::string_view profile_uri(bool is_json_fg) {
+  return is_json_fg ? "http://www.opengis.net/def/profile/OGC/0/jsonfg"
+                    : "http://www.opengis.net/def/profile/OGC/0/rfc7946";
 }
 
 std::string json_fg_head(PlaceSystem system, std::uint32_t srid) {
@@ -97,41 +92,8 @@ std::string FeatureForm::name() const {
   return name;
 }
 
-Result<formats::CityFeature> FeatureWriter::read_city(const Document& document,
-                                                      const std::string& id) {
-  const std::string_view header = document.header;
-  auto reader = readers_.find(header);
-  if (reader == readers_.end()) {
-    auto made = formats::CityFeatureReader::make(header, limits_);
-    if (!made) return std::move(made).error();
-    if (readers_.size() >= kMostReaders) readers_.clear();
-    reader = readers_.emplace(std::string(header), *std::move(made)).first;
-  }
-  const auto text = formats::write_feature(document, document.features.front());
-  if (!text) return text.error();
-  return reader->second.read(*text, id, form_.lod, limits_);
-}
-
-Result<ShownFeature> FeatureWriter::read(StoredFeature stored) {
-  ShownFeature shown{stored.id, stored.type, stored.srid, {}, own_properties(stored)};
-  auto document = pipeline::from_stored(std::move(stored), limits_);
-  if (!document) return damaged(document.error());
-  const bool is_city =
-      document->format == Format::city_json || document->format == Format::city_json_seq;
-  if (!is_city && document->format != Format::gml) {
-    shown.city = formats::city_feature_of(document->features.front());
-    return shown;
-  }
-  if (!is_city) document = formats::as_city_model(*document);
-  if (!document) return damaged(document.error());
-  auto city = read_city(*document, shown.id);
-  if (!city) return damaged(city.error());
-  shown.city = *std::move(city);
-  return shown;
-}
-
 Result<std::string> FeatureWriter::write(StoredFeature stored) {
-  auto shown = read(std::move(stored));
+  auto shown = reader_.read(std::move(stored));
   if (!shown) return std::move(shown).error();
   formats::CityFeature& city = shown->city;
   const Status brought = city.is_too_large ? Error{ErrorCode::limit_exceeded,
@@ -139,7 +101,7 @@ Result<std::string> FeatureWriter::write(StoredFeature stored) {
                                            : bring_into(form_.system, shown->srid, city.shapes);
   if (!brought) {
     city.shapes = {};
-    shown->properties.emplace_back(std::string(kOwnProperty) + "no_geometry",
+    shown->properties.emplace_back(std::string(pipeline::kOwnProperty) + "no_geometry",
                                    json_string(brought.error().message));
   }
   return form_.is_json_fg

@@ -3,13 +3,12 @@
 // Stored features as GeoJSON, for lists and for one item. Internal to server/.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "formats/geo_json/city_shapes.h"
+#include "pipeline/shown/shown_feature.h"
 #include "server/features/systems.h"
 #include "server/handlers.h"
 
@@ -28,43 +27,34 @@ struct FeatureForm {
   std::string name() const;
 };
 
+/// Whether the parameter `profile` of a request for GeoJSON names the profile JSON-FG (OGC API -
+/// Common, part 3; JSON-FG, "JSON-FG in Web APIs"). Other profiles are ignored, as the standard
+/// wants it.
+bool wants_json_fg(const Target& target);
+
+/// The address of the profile of GeoJSON that an answer has.
+std::string_view profile_uri(bool is_json_fg);
+
 /// The members with which a JSON-FG document begins, with a comma after each.
 std::string json_fg_head(PlaceSystem system, std::uint32_t srid);
 
 /// Whether it takes more than a moment to decode a feature.
 bool is_large(const StoredFeature& feature);
 
-/// The names of the properties that the service adds to the attributes of a feature begin so.
-inline constexpr std::string_view kOwnProperty = "wt_";
-
-/// A stored feature as it is shown, in the storage CRS.
-struct ShownFeature {
-  std::string id;
-  std::string type;
-  std::uint32_t srid = 0;
-  formats::CityFeature city;
-  std::vector<std::pair<std::string, std::string>> properties;  // of the service: name, JSON text
-};
-
-/// Writes stored features as GeoJSON; keeps what features of one document share from one feature to
-/// the next.
+/// Writes stored features as GeoJSON.
 class FeatureWriter {
  public:
-  FeatureWriter(FeatureForm form, const Limits& limits) : form_(std::move(form)), limits_(limits) {}
+  FeatureWriter(FeatureForm form, const Limits& limits)
+      : form_(std::move(form)), reader_(form_.lod, limits) {}
 
   /// The Feature in one line. A geometry that has no coordinates in the wanted CRS is null, and the
   /// property wt_no_geometry has the reason. Errors: unavailable for a feature that cannot be
   /// decoded.
   Result<std::string> write(StoredFeature stored);
-  /// The feature for another form than text. Errors: as for write().
-  Result<ShownFeature> read(StoredFeature stored);
 
  private:
-  Result<formats::CityFeature> read_city(const Document& document, const std::string& id);
-
   FeatureForm form_;
-  Limits limits_;
-  std::map<std::string, formats::CityFeatureReader, std::less<>> readers_;  // by header
+  pipeline::ShownFeatureReader reader_;
 };
 
 }  // namespace watertight::server

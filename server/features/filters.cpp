@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/features/filters.h"
 
+#include "base/checksum.h"
 #include "cql2/cql2.h"
 #include "server/features/systems.h"
+#include "server/json_answers.h"
 
 namespace watertight::server {
 namespace {
@@ -52,6 +54,34 @@ Result<std::optional<store::Filter>> filter_of_request(const Target& target,
     return std::move(placed).error();
   }
   return std::optional(*std::move(filter));
+}
+
+Result<std::optional<store::Filter>> selection_of_request(
+    const Target& target, const store::StoredCollection& collection) {
+  auto filter = filter_of_request(target, collection);
+  if (!filter) return filter;
+  const auto choice = box_of_request(target, collection);
+  if (!choice) return choice.error();
+  if (!choice->is_empty && !choice->box) return filter;
+  store::Filter box{store::Filter::Kind::constant};
+  box.truth = false;
+  if (choice->box) {
+    box.kind = store::Filter::Kind::box;
+    box.box = *choice->box;
+  }
+  if (!*filter) return std::optional(std::move(box));
+  return std::optional(store::Filter{store::Filter::Kind::all, {**std::move(filter), box}});
+}
+
+std::string selection_name(const Target& target) {
+  std::string text;
+  for (const std::string_view name : kSelectionParameters) {
+    const std::string* value = target.parameter(name);
+    if (value == nullptr) continue;
+    text.append(name).append("=").append(percent_encode(*value)).append("&");
+  }
+  if (text.empty()) return text;
+  return std::string("-").append(std::to_string(content_hash(as_bytes(text))));
 }
 
 Result<std::optional<store::SortKey>> sort_of_request(const Target& target) {

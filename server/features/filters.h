@@ -4,7 +4,10 @@
 // to server/.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "server/handlers.h"
 
@@ -16,6 +19,18 @@ namespace watertight::server {
 /// choice_of_box().
 Result<std::optional<store::Filter>> filter_of_request(const Target& target,
                                                        const store::StoredCollection& collection);
+
+/// The parameters by which some features of a collection are selected for a file or a report.
+inline constexpr std::array<std::string_view, 5> kSelectionParameters{
+    "filter", "filter-lang", "filter-crs", "bbox", "bbox-crs"};
+
+/// filter_of_request() and box_of_request() together; nothing if all features are selected. Errors:
+/// those of both.
+Result<std::optional<store::Filter>> selection_of_request(
+    const Target& target, const store::StoredCollection& collection);
+
+/// A text that tells the selections of requests apart; "" without one.
+std::string selection_name(const Target& target);
 
 /// The order in the parameter `sortby`: the name of an attribute, after + (ascending, as without)
 /// or - (descending); nothing without one. Errors: invalid_argument.

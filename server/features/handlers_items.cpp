@@ -86,9 +86,11 @@ Json summary_json(const std::string& base, const std::string& collection,
 struct PageType {
   bool is_summary = false;
   std::string_view type;
+  bool is_json_fg = type == kJsonFg;
+  bool is_geo_json() const { return !is_summary && type != kHtml; }
 };
 
-std::optional<PageType> page_type(const RoutedRequest& request) {
+std::optional<PageType> named_type(const RoutedRequest& request) {
   if (const std::string* format = request.target.parameter("f")) {
     if (*format == "geojson") return PageType{false, kGeoJson};
     if (*format == "json") return PageType{false, kJson};
@@ -101,6 +103,13 @@ std::optional<PageType> page_type(const RoutedRequest& request) {
   if (!offer) return std::nullopt;
   constexpr std::array<std::string_view, 4> kTypes{kGeoJson, kJson, kHtml, kJsonFg};
   return PageType{false, kTypes[*offer]};
+}
+
+/// The form that a request names, in the profile that it wants.
+std::optional<PageType> page_type(const RoutedRequest& request) {
+  auto type = named_type(request);
+  if (type && type->is_geo_json()) type->is_json_fg |= wants_json_fg(request.target);
+  return type;
 }
 
 /// A page that was read from the database and is to be written, apart from the request, so that
@@ -149,6 +158,9 @@ Json page_head(const PageWork& work, const std::string& next, std::size_t return
   }
   json["links"].push_back(link(work.base + "/collections/" + percent_encode(work.collection),
                                "collection", kJson, "the collection"));
+  if (work.type.is_geo_json()) {
+    json["links"].push_back({{"href", profile_uri(work.form.is_json_fg)}, {"rel", "profile"}});
+  }
   if (next.empty() && work.after.empty()) {
     json["numberMatched"] = returned;
   } else if (work.matched) {
@@ -273,7 +285,7 @@ Result<ListRequest> list_request(const RoutedRequest& request, const PageType& t
   const Target& target = request.target;
   auto collection = request.service.store->collection(target.segments[1]);
   if (!collection) return std::move(collection).error();
-  auto form = FeatureForm::of_request(target, collection->srid, type.type == kJsonFg);
+  auto form = FeatureForm::of_request(target, collection->srid, type.is_json_fg);
   if (!form) return std::move(form).error();
   const auto box = box_of_request(target, *collection);
   if (!box) return box.error();

@@ -132,7 +132,7 @@ std::vector<std::string> columns_of(const Json& features) {
   std::vector<std::string> names;
   for (const Json& feature : features) {
     for (const auto& [name, value] : feature["properties"].items()) {
-      const bool is_shown = !name.starts_with(kOwnProperty) && !value.is_structured();
+      const bool is_shown = !name.starts_with(pipeline::kOwnProperty) && !value.is_structured();
       if (!is_shown || std::find(names.begin(), names.end(), name) != names.end()) continue;
       if (names.size() < kMostColumns) names.push_back(name);
     }

@@ -10,6 +10,7 @@
 #include "pipeline/outcome_json.h"
 #include "pipeline/structure.h"
 #include "server/features/feature_text.h"
+#include "server/features/links.h"
 #include "server/features/pages.h"
 #include "server/handlers.h"
 #include "server/items/preconditions.h"
@@ -66,13 +67,17 @@ struct ItemRequest {
   FeatureForm form;   // of GeoJSON and JSON-FG; others are in the storage CRS
   Request message;    // of a GET or HEAD, so without a body
 
+  std::string links = {};  // the value of a field Link
+
   /// The word that names the representation in its tag.
   std::string representation() const {
-    if (is_geo_json()) return form.name();
+    if (is_geo_json()) return form.name() + (is_profile() ? "-profile" : "");
     std::string name(format.parameter);
     if (!solid.empty()) name += '-' + percent_encode(solid);
     return name;
   }
+  /// Whether the type of the answer is that of GeoJSON, but it is JSON-FG.
+  bool is_profile() const { return form.is_json_fg && format.type == kGeoJson; }
   bool is_geo_json() const { return format.parameter == "geojson" || form.is_json_fg; }
   std::string key(std::uint64_t version) const {
     return collection + '/' + id + '/' + etag_of(version, representation());
@@ -164,6 +169,13 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item,
   return pipeline::convert_document(*document, target);
 }
 
+/// The answer with the links that the client needs; they depend on its name for the service, so the
+/// cache does not have them.
+Response linked(const ItemRequest& item, Response response) {
+  if (response.status < 300 && item.is_geo_json()) response.headers.push_back({"Link", item.links});
+  return response;
+}
+
 /// The representation of a feature that was read, which the cache keeps.
 Response represented(StoredFeature feature, const ItemRequest& item,
                      const CancelPoll& is_cancelled) {
@@ -185,7 +197,7 @@ Response represented(StoredFeature feature, const ItemRequest& item,
   if (RepresentationCache* cache = item.service.cache) {
     cache->keep(item.key(version), std::make_shared<const Response>(response));
   }
-  return in_range(item.message, std::move(response));
+  return linked(item, in_range(item.message, std::move(response)));
 }
 
 /// The answer that the cache has for this version of the feature.
@@ -193,7 +205,7 @@ std::optional<Response> cached(const ItemRequest& item, std::uint64_t version) {
   if (item.service.cache == nullptr) return std::nullopt;
   const auto kept = item.service.cache->find(item.key(version));
   if (!kept) return std::nullopt;
-  return in_range(item.message, *kept);
+  return linked(item, in_range(item.message, *kept));
 }
 
 /// Reads the feature and makes its representation; leaves a large one to the lane for that.
@@ -210,6 +222,16 @@ Response read_and_represent(const ItemRequest& item, const CancelPoll& is_cancel
                     return represented(std::move(*large), item, is_stopped);
                   }});
   return response;
+}
+
+/// The links of a feature to itself, its collection and its profile (RFC 8288).
+std::string links_of_item(const RoutedRequest& request, bool is_json_fg) {
+  const std::string base = base_url(request);
+  std::string links = "<";
+  links.append(base).append(item_path(request.target.segments[1], request.target.segments[3]));
+  links.append(">; rel=\"self\", <").append(base).append("/collections/");
+  links.append(percent_encode(request.target.segments[1])).append(">; rel=\"collection\", <");
+  return links.append(profile_uri(is_json_fg)).append(">; rel=\"profile\"");
 }
 
 }  // namespace
@@ -232,11 +254,12 @@ Response get_item(const RoutedRequest& request) {
     return refuse(400, "invalid-argument", "the parameter solid is for f=blob only");
   }
   FeatureForm form{false, PlaceSystem::storage, std::nullopt};
+  const bool is_json_fg = format->parameter == "jsonfg" ||
+                          (format->parameter == "geojson" && wants_json_fg(request.target));
   if (format->parameter == "geojson" || format->parameter == "jsonfg") {
     const auto collection = request.service.store->collection(request.target.segments[1]);
     if (!collection) return to_response(to_problem(collection.error()));
-    const auto wanted =
-        FeatureForm::of_request(request.target, collection->srid, format->parameter == "jsonfg");
+    const auto wanted = FeatureForm::of_request(request.target, collection->srid, is_json_fg);
     if (!wanted) return to_response(to_problem(wanted.error()));
     form = *wanted;
   } else if (request.target.parameter("crs") != nullptr ||
@@ -250,7 +273,8 @@ Response get_item(const RoutedRequest& request) {
                          *format,
                          solid == nullptr ? std::string() : *solid,
                          std::move(form),
-                         request.request};
+                         request.request,
+                         links_of_item(request, is_json_fg)};
   const auto version = request.service.store->version(item.collection, item.id);
   if (!version) return to_response(to_problem(version.error()));
   auto unneeded = unless_needed(request.request, etag_of(*version, item.representation()));

@@ -275,7 +275,7 @@ Result<Bytes> content_of(const RoutedRequest& request, const TileRequest& wanted
   const Error too_much{ErrorCode::limit_exceeded, "the tile has more than a tile may have"};
   if (ids->size() > kMostFeatures) return too_much;
   const tiles::Frame frame = frame_at(srid, wanted.frame);
-  FeatureWriter writer({}, request.service.options.limits);
+  pipeline::ShownFeatureReader reader(std::nullopt, request.service.options.limits);
   std::vector<tiles::FeatureMesh> meshes;
   std::size_t triangles = 0;
   for (const std::string& id : *ids) {
@@ -285,7 +285,7 @@ Result<Bytes> content_of(const RoutedRequest& request, const TileRequest& wanted
     auto stored = store.get(wanted.query.collection, id);
     if (!stored && stored.error().code == ErrorCode::not_found) continue;
     if (!stored) return std::move(stored).error();
-    auto shown = writer.read(*std::move(stored));
+    auto shown = reader.read(*std::move(stored));
     if (!shown) return std::move(shown).error();
     auto mesh = mesh_of_shown(*std::move(shown), frame);
     if (!mesh || mesh->is_empty()) continue;  // it is too large to be shown, or has no place

@@ -9,7 +9,8 @@
 
 namespace watertight::server {
 
-Result<tiles::FeatureMesh> mesh_of_shown(ShownFeature feature, const tiles::Frame& frame) {
+Result<tiles::FeatureMesh> mesh_of_shown(pipeline::ShownFeature feature,
+                                         const tiles::Frame& frame) {
   if (feature.city.is_too_large) {
     return Error{ErrorCode::limit_exceeded, "the geometry has more vertices than are shown"};
   }
@@ -22,7 +23,8 @@ Result<tiles::FeatureMesh> mesh_of_shown(ShownFeature feature, const tiles::Fram
 
 Result<Bytes> glb_of_feature(StoredFeature feature, const Limits& limits) {
   const Error nothing{ErrorCode::not_encodable, "this feature has no geometry to draw"};
-  auto shown = FeatureWriter({}, limits).read(std::move(feature));
+  pipeline::ShownFeatureReader reader({}, limits);
+  auto shown = reader.read(std::move(feature));
   if (!shown) return std::move(shown).error();
   if (shown->city.shapes.positions.empty() && !shown->city.is_too_large) return nothing;
   auto frame = shown->city.is_too_large

@@ -12,10 +12,10 @@ namespace watertight::server {
 
 /// The feature in a frame; the properties of the service are those of its GeoJSON. Errors:
 /// limit_exceeded for more vertices than are shown; those of tiles::mesh_of().
-Result<tiles::FeatureMesh> mesh_of_shown(ShownFeature feature, const tiles::Frame& frame);
+Result<tiles::FeatureMesh> mesh_of_shown(pipeline::ShownFeature feature, const tiles::Frame& frame);
 
 /// The feature alone, as a .glb around its own middle. Errors: not_encodable without anything to
-/// draw; those of FeatureWriter::read() and mesh_of_shown().
+/// draw; those of ShownFeatureReader::read() and mesh_of_shown().
 Result<Bytes> glb_of_feature(StoredFeature feature, const Limits& limits);
 
 }  // namespace watertight::server

@@ -167,11 +167,4 @@ Status check_names(DatabaseSession& connection, const std::string& collection,
   return Done{};
 }
 
-Status check_conditions(DatabaseSession& connection, const std::string& collection,
-                        std::span<const AttributeCondition> conditions) {
-  std::vector<std::string> names;
-  for (const AttributeCondition& condition : conditions) names.push_back(condition.name);
-  return check_names(connection, collection, names);
-}
-
 }  // namespace watertight::store

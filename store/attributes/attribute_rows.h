@@ -33,10 +33,6 @@ std::string attribute_clauses(std::span<const AttributeCondition> conditions, in
 Status check_names(DatabaseSession& connection, const std::string& collection,
                    std::span<const std::string> names);
 
-/// Ok when all conditions are on chosen attributes that are complete. Errors: invalid_argument.
-Status check_conditions(DatabaseSession& connection, const std::string& collection,
-                        std::span<const AttributeCondition> conditions);
-
 /// Errors: not_found.
 Result<std::vector<ChosenAttribute>> read_attributes(DatabaseSession& connection,
                                                      const std::string& collection);

@@ -150,6 +150,15 @@ std::optional<std::size_t> size_of(const Filter& filter, std::size_t depth) {
 
 }  // namespace
 
+Filter filter_of(std::span<const AttributeCondition> conditions) {
+  Filter filter{Filter::Kind::all};
+  for (const AttributeCondition& condition : conditions) {
+    filter.parts.push_back(
+        {Filter::Kind::compare, {}, condition.name, condition.comparison, condition.values});
+  }
+  return filter;
+}
+
 std::vector<std::string> names_in(const Filter& filter) {
   std::vector<std::string> names;
   add_names(filter, names);

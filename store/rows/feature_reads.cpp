@@ -99,7 +99,7 @@ Result<WalkPlace> walk_place(const std::string& text) {
 /// batch.
 Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                        const std::string& collection, const WalkPlace& after, std::int64_t limit,
-                       std::span<const AttributeCondition> where) {
+                       const std::optional<Filter>& filter) {
   Parameters parameters;
   parameters.text(collection).int8(after.place).text(after.id).int8(limit);
   std::string statement = columns;
@@ -107,10 +107,10 @@ Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
       ", f.place FROM watertight.feature_row f JOIN watertight.collection c ON c.key = f.collection"
       " WHERE c.key = (SELECT key FROM watertight.collection WHERE name = $1)"
       " AND f.place >= $2 AND (f.place, f.id) > ($2, $3)");
-  statement.append(attribute_clauses(where, 5, parameters));
+  int next = 5;
+  if (filter) statement.append(" AND ").append(filter_clause(*filter, next, parameters));
   statement.append(" ORDER BY f.place, f.id LIMIT $4");
-  return where.empty() ? connection.ask(statement, parameters)
-                       : connection.run(statement, parameters);
+  return filter ? connection.run(statement, parameters) : connection.ask(statement, parameters);
 }
 
 /// How many of the next features make a batch, and whether it is the last batch.
@@ -121,10 +121,10 @@ struct BatchSize {
 
 Result<BatchSize> batch_size(DatabaseSession& connection, const std::string& collection,
                              const WalkPlace& after, std::int64_t limit,
-                             std::span<const AttributeCondition> where) {
+                             const std::optional<Filter>& filter) {
   const Result<Rows> rows = walk_rows(
       connection, "SELECT (octet_length(packed_solids) + octet_length(packed_text))::int8",
-      collection, after, limit + 1, where);
+      collection, after, limit + 1, filter);
   if (!rows) return rows.error();
   BatchSize size;
   for (std::int64_t bytes = 0; size.features < rows->size() && size.features < limit;) {
@@ -225,22 +225,23 @@ Result<std::uint64_t> read_version(DatabaseSession& connection, const std::strin
 
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
                                 std::uint64_t limit, const std::string& after,
-                                std::span<const AttributeCondition> where, SharedRows& shared) {
+                                const std::optional<Filter>& filter, SharedRows& shared) {
   const Result<WalkPlace> start = walk_place(after);
   if (!start) return start.error();
   const auto at_most = static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage));
   auto key = key_of_collection(connection, collection);
   if (!key) return std::move(key).error();
-  if (Status able = check_conditions(connection, collection, where); !able) {
-    return std::move(able).error();
+  if (filter) {
+    const Status able = check_names(connection, collection, names_in(*filter));
+    if (!able) return able.error();
   }
-  const Result<BatchSize> size = batch_size(connection, collection, *start, at_most, where);
+  const Result<BatchSize> size = batch_size(connection, collection, *start, at_most, filter);
   if (!size) return size.error();
   FeatureBatch batch;
   batch.key = *std::move(key);
   if (size->features == 0) return batch;
   const Result<Rows> rows =
-      walk_rows(connection, kFeatureColumns, collection, *start, size->features, where);
+      walk_rows(connection, kFeatureColumns, collection, *start, size->features, filter);
   if (!rows) return rows.error();
   auto features = features_of(connection, *rows, collection, shared);
   if (!features) return std::move(features).error();
@@ -262,7 +263,7 @@ Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& c
       connection,
       "SELECT f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z, hashtextextended(f.id, 0),"
       " (octet_length(packed_solids) + octet_length(packed_text))::int8, f.id",
-      collection, *start, at_most, {});
+      collection, *start, at_most, std::nullopt);
   if (!rows) return rows.error();
   PlacedPage page;
   for (int row = 0; row < rows->size(); ++row) {

@@ -111,7 +111,7 @@ Result<std::string> key_of_collection(DatabaseSession& connection, const std::st
 Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& query);
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
                                 std::uint64_t limit, const std::string& after,
-                                std::span<const AttributeCondition> where, SharedRows& shared);
+                                const std::optional<Filter>& filter, SharedRows& shared);
 Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& collection,
                                std::uint64_t limit, const std::string& after);
 Result<std::vector<std::string>> read_ranked(DatabaseSession& connection, const RankQuery& query,

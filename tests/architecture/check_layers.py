@@ -35,7 +35,7 @@ import sys
 import tempfile
 
 FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
-           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "cql2", "pipeline", "files", "report", "web", "server", "cli", "sql"]
+           "columns", "archives", "projection", "tiles", "formats", "packing", "store", "cql2", "pipeline", "geopackage", "files", "report", "web", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
 MAX_SOURCES_OF_CODEC = 16  # the most sources in one subfolder of codec/
@@ -50,12 +50,13 @@ HOMES = [
     (r"(postgresql/)?(libpq-fe|libpq-events)\.h", "libpq",
      [r"store/", r"tests/unit/store/", r"tests/integration/", r"bench/"]),
     (r"nlohmann/", "nlohmann-json",
-     [r"formats/", r"tiles/", r"cql2/", r"server/", r"cli/", r"validate/report_json", r"tests/", r"bench/"]),
+     [r"formats/", r"tiles/", r"cql2/", r"geopackage/", r"server/", r"cli/", r"validate/report_json", r"tests/", r"bench/"]),
     (r"CGAL/", "CGAL",
      [r"geometry/", r"tessellate/", r"delaunay/", r"tests/", r"bench/"]),
     (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),
     (r"CLI/", "CLI11", [r"cli/", r"bench/"]),
     (r"lzma\.h", "liblzma", [r"columns/"]),
+    (r"sqlite3\.h", "SQLite", [r"geopackage/", r"tests/unit/geopackage/"]),
     (r"(zstd|zstd_errors)\.h", "zstd",
      [r"archives/", r"columns/", r"formats/", r"packing/", r"tests/unit/(archives|cli|server)/", r"bench/"]),
     (r"zlib\.h", "zlib", [r"archives/", r"tests/unit/(archives|cli|server)/"]),

@@ -23,7 +23,7 @@ import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
 FOLDERS = ("base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
-           "columns", "archives", "formats", "packing", "store", "cql2", "pipeline", "files", "report", "server", "cli", "sql")
+           "columns", "archives", "formats", "packing", "store", "cql2", "pipeline", "geopackage", "files", "report", "server", "cli", "sql")
 TOO_HEAVY = ("CGAL/", "boost/", "tetgen.h")
 
 

@@ -26,7 +26,9 @@ from qgis.core import QgsApplication, QgsRectangle, QgsVectorLayer, QgsWkbTypes
 import json
 application = QgsApplication([], False)
 application.initQgis()
-layer = QgsVectorLayer(f"url='{sys.argv[1]}' typename='{sys.argv[2]}'", "layer", "OAPIF")
+is_file = sys.argv[1].endswith(".gpkg")
+source = f"{sys.argv[1]}|layername={sys.argv[2]}" if is_file else f"url='{sys.argv[1]}' typename='{sys.argv[2]}'"
+layer = QgsVectorLayer(source, "layer", "ogr" if is_file else "OAPIF")
 extent, count = QgsRectangle(), 0
 extent.setMinimal()
 for feature in layer.getFeatures():
@@ -145,13 +147,60 @@ def compare_geopackage(url, folder, count):
     check("3D Multi Polygon" in summary, "its geometry has heights")
 
 
-def compare_qgis(url, folder, found):
+def compare_collection_file(service, folder, expected):
+    """The GeoPackage that the service makes, by GDAL, against the document: exact, in the storage CRS."""
+    target = folder / "own.gpkg"
+    status, body = service.request("GET", "/collections/town/export?f=gpkg", None, 300)
+    check(status == 200, f"the service makes a GeoPackage ({status})")
+    target.write_bytes(body)
+    layers = json.loads(run("ogr2ogr", "-f", "GeoJSON", "/vsistdout/", "-lco", "COORDINATE_PRECISION=17", str(target), "town"))
+    check(f"EPSG::{expected.srid}" in json.dumps(layers.get("crs", {})), f"its CRS is EPSG:{expected.srid}")
+    found = {feature["properties"]["id"]: feature for feature in layers["features"]}
+    check(set(found) == set(expected.features), f"it has all {len(found)} features")
+    wrong = places = 0
+    for name, feature in expected.features.items():
+        facets = [[[[round(value, 6) for value in point] for point in [*ring, ring[0]]] for ring in rings]
+                  for rings in expected.facets(feature)]  # the document has three decimals
+        places += sum(len(ring) for rings in facets for ring in rings)
+        wrong += found[name]["geometry"]["coordinates"] != facets
+        for key, value in feature["CityObjects"][name].get("attributes", {}).items():
+            is_plain = not isinstance(value, (dict, list)) and not str(value).startswith("[")
+            column = "fid_2" if key == "fid" else key  # fid is the number of the row
+            wrong += is_plain and found[name]["properties"].get(column) != value
+    check(places > 1000 and wrong == 0, f"its {places} positions and the attributes are those of the document ({wrong} differ)")
+    years = [feature["properties"]["oorspronkelijkbouwjaar"] for feature in found.values()]
+    summary = run("ogrinfo", "-so", "-where", f"oorspronkelijkbouwjaar = {years[0]}", str(target), "town")
+    check(f"Feature Count: {years.count(years[0])}" in summary, f"-where finds the {years.count(years[0])} of {years[0]}")
+    check("oorspronkelijkbouwjaar: Integer" in summary, "a column of whole numbers is one of integers")
+    boxes = [box_of(feature) for feature in found.values()]
+    xs = sorted(box[0] for box in boxes)
+    west = [xs[0], min(box[1] for box in boxes), xs[len(xs) // 2], max(box[3] for box in boxes)]
+    count = int(run("ogrinfo", "-so", "-spat", *map(repr, west), str(target), "town").split("Feature Count: ")[1].split()[0])
+    check(len(xs) // 2 <= count < len(xs), f"-spat finds the {count} in the west, by the index")
+    run("ogrinfo", str(target), "-sql", "DELETE FROM town WHERE fid > 1")
+    check("Feature Count: 1\n" in run("ogrinfo", "-so", str(target), "town"), "GDAL can change it")
+    target.write_bytes(body)
+    return target
+
+
+def seen_by_qgis(source, folder):
     python = "/usr/bin/python3"  # QGIS's module is that of the system
     home = folder / "qgis"
-    home.mkdir(mode=0o700)
+    home.mkdir(mode=0o700, exist_ok=True)
     environment = {**os.environ, "HOME": str(home), "XDG_RUNTIME_DIR": str(home)}
-    out = run(python, "-c", QGIS, url, "town", env=environment)
-    result = json.loads(next(line for line in out.splitlines() if line.startswith("RESULT "))[7:])
+    out = run(python, "-c", QGIS, source, "town", env=environment)
+    return json.loads(next(line for line in out.splitlines() if line.startswith("RESULT "))[7:])
+
+
+def compare_qgis_file(target, folder, expected):
+    result = seen_by_qgis(str(target), folder)
+    check(result["valid"] and result["read"] == len(expected.features), f"QGIS reads the {result['read']} features of the GeoPackage")
+    check(result["crs"] == f"EPSG:{expected.srid}", f"QGIS takes its CRS for {result['crs']}")
+    check(result["type"] == "MultiPolygonZ", f"QGIS takes its geometry for {result['type']}")
+
+
+def compare_qgis(url, folder, found):
+    result = seen_by_qgis(url, folder)
     boxes = [box_of(feature) for feature in found.values()]
     extent = [min(box[0] for box in boxes), min(box[1] for box in boxes), max(box[2] for box in boxes),
               max(box[3] for box in boxes)]
@@ -174,6 +223,7 @@ def main():
         compare_selections(url, found)
         compare_geopackage(url, folder, len(found))
         compare_qgis(url, folder, found)
+        compare_qgis_file(compare_collection_file(service, folder, expected), folder, expected)
         service.stop()
     print(f"{len(failures)} differences")
     sys.exit(1 if failures else 0)

@@ -214,12 +214,12 @@ class MemoryStore : public SolidStore {
   using SolidStore::walk;
   Result<store::FeatureBatch> walk(const std::string& collection, std::uint64_t limit,
                                    const std::string& after,
-                                   std::span<const store::AttributeCondition> where) override {
+                                   const std::optional<store::Filter>& filter) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
     store::FeatureBatch batch;
     for (const auto& [id, feature] : features_[collection]) {
-      if (id <= after || !fulfils(feature, where)) continue;
+      if (id <= after || (filter && !passes(feature, *filter))) continue;
       if (batch.features.size() == limit) {
         batch.next = batch.features.back().id;
         break;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "server/export_files.h"
 #include "server/handlers.h"
 #include "server/metrics/metrics.h"
 #include "tests/unit/pipeline/samples.h"
@@ -24,6 +25,7 @@ class RoutesFixture {
     const CancelPoll never = [] { return false; };
     server::Service service{&store, nullptr, {}};
     service.metrics = &metrics;
+    service.export_files = &files;
     server::Response response = server::respond(service, request, never);
     while (response.further) response = std::shared_ptr(response.further)->make(never);
     return response;
@@ -38,6 +40,7 @@ class RoutesFixture {
   }
   mutable MemoryStore store;
   mutable server::Metrics metrics;
+  mutable server::ExportFiles files;
 };
 
 inline Json problem_of(const server::Response& response) {

@@ -59,7 +59,7 @@ class Keys {
 
 Request asking(const std::string& method, const std::string& target,
                const std::string& authorization = "") {
-  Request request{method, target, {}, ""};
+  Request request{method, target, {{"content-type", "application/json"}}, ""};
   if (!authorization.empty()) request.headers.push_back({"authorization", authorization});
   return request;
 }

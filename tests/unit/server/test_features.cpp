@@ -286,6 +286,7 @@ TEST_CASE_METHOD(City, "links are absolute, by the request or by what a proxy sa
   const Json page = this->page("?limit=1", {{"host", "example.org"}});
   std::set<std::string> relations;
   for (const Json& link : page["links"]) {
+    if (link["rel"] == "profile") continue;  // an address of the OGC
     relations.insert(link["rel"]);
     CHECK(link["href"].get<std::string>().starts_with("http://example.org/collections/town"));
     CHECK(get(link["href"]).status == 200);

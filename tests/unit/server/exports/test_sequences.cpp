@@ -70,9 +70,9 @@ TEST_CASE_METHOD(Fixture, "a collection that needs several sequences links to ea
 }
 
 TEST_CASE_METHOD(Fixture, "a range of a sequence of several is refused like the whole") {
-  server::ExportFiles files;
+  server::ExportFiles kept;
   server::Service service{&store, nullptr, {}};
-  service.export_files = &files;
+  service.export_files = &kept;
   REQUIRE(post("/collections/town/items", kTwo).status == 201);
   const std::string fine = variant("fine", "100.0", "0.12345678901");
   REQUIRE(post("/collections/town/items", fine).status == 201);

@@ -54,6 +54,15 @@ Status read_origin(const std::string& origin, server::ServeOptions& options) {
   return origin.empty() ? Status(Done{}) : server::check_origin(origin);
 }
 
+/// Reads the start of links; "" leaves it to the requests.
+Status read_base_url(std::string url, server::ServeOptions& options) {
+  if (url.empty()) return Done{};
+  if (Status checked = server::check_base_url(url); !checked) return checked;
+  while (url.ends_with('/')) url.pop_back();
+  options.base_url = std::move(url);
+  return Done{};
+}
+
 /// Reads the certificate and its key, while the program has the right to.
 Status read_tls(const ServeCommand& command, server::ServerOptions& options) {
   if (command.tls_certificate.empty()) return Done{};
@@ -95,13 +104,9 @@ Exit run(const ServeCommand& command) {
     // A service that was stopped before it listened has done what it was told.
     return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
   };
-  if (!command.base_url.empty()) {
-    if (const Status checked = server::check_base_url(command.base_url); !checked) {
-      complain("--base-url", checked.error());
-      return Exit::error;
-    }
-    options.base_url = command.base_url;
-    while (options.base_url.ends_with('/')) options.base_url.pop_back();
+  if (const Status read = read_base_url(command.base_url, options); !read) {
+    complain("--base-url", read.error());
+    return Exit::error;
   }
   if (const Status checked = read_origin(command.cors, options); !checked) {
     complain("--cors", checked.error());

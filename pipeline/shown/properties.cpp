@@ -60,7 +60,7 @@ Result<std::vector<PropertyKinds>> found_properties(SolidStore& store,
       if (!encoded) return encoded.error();
       for (auto& [name, value] : formats::city_attributes(model_text(*encoded), id)) {
         const auto [place, is_new] = places.try_emplace(name, found.size());
-        if (is_new) found.push_back({std::move(name), {}});
+        if (is_new) found.emplace_back(name, ValueKinds{});
         found[place->second].second.note(value);
       }
       if (found.size() > kMostNames) {

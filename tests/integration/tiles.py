@@ -7,7 +7,7 @@
 Khronos' glTF validator finds no error and no warning, meshoptimizer's own decoder expands the tiles, and
 gdaltransform says where the features are: each has the area of its facets, at its place on the Earth, once
 among all tiles; from the command line, uncompressed, and from the service. The other documents are only made
-tiles of and validated. NODE_FOLDER is where npm puts the packages of gltf/package.json. Exit code 1 after a
+tiles of and validated. Cesium's 3d-tiles-tools walks each tileset. NODE_FOLDER is where npm puts the packages of gltf/package.json. Exit code 1 after a
 difference.
 """
 import json
@@ -130,17 +130,38 @@ def compare(name, tileset, files, expected):
     check(far <= METRES, f"{name}: features are where GDAL puts them, to {far * 1000:.1f} mm")
 
 
+def walk(name, folders):
+    """Cesium's 3d-tiles-tools traverses tilesets, reads all metadata, packs and unpacks them."""
+    lines = run("node", str(NODE / "walk_tiles.js"), *map(str, folders)).splitlines()
+    walked = [json.loads(line) for line in lines]
+    wrong = [(one["folder"], one["wrong"]) for one in walked if one["wrong"]]
+    tiles, features = sum(one["tiles"] for one in walked), sum(one["features"] for one in walked)
+    check(len(walked) == len(folders) and not wrong, f"{name}: 3d-tiles-tools walk {tiles} tiles with {features} features {wrong}")
+
+
 def compare_command(folder, expected):
     for words in ([], ["--uncompressed"]):
         out = folder / ("tiles" + "".join(words))
         run(PROGRAM, "tiles", str(DOCUMENT), "-o", str(out), *words)
         tileset = json.loads((out / "tileset.json").read_text())
         compare("tiles " + " ".join(words), tileset, [out / uri for uri, _, _ in tiles_of(tileset["root"])], expected)
+    walk("tiles", [folder / "tiles", folder / "tiles--uncompressed"])
     again = folder / "again"
     run(PROGRAM, "tiles", str(DOCUMENT), "-o", str(again), "-j", "1")
     check(run("diff", "-r", str(again), str(folder / "tiles")) == "", "one thread writes the same bytes")
     refused = subprocess.run([PROGRAM, "tiles", str(DOCUMENT), "-o", str(again)], capture_output=True, check=False)
     check(refused.returncode == 2 and b"is there already" in refused.stderr, "a folder that is there is not written to")
+
+
+def as_files(folder, tileset, files):
+    """The tileset of the service as files, whose addresses have no parameters."""
+    out = folder / "walked"
+    out.mkdir()
+    for (_, _, tile), file in zip(tiles_of(tileset["root"]), files):
+        shutil.copy(file, out / file.name)
+        tile["content"]["uri"] = file.name
+    (out / "tileset.json").write_text(json.dumps(tileset))
+    return out
 
 
 def compare_service(folder, expected):
@@ -155,6 +176,7 @@ def compare_service(folder, expected):
             files.append(folder / f"{len(files)}.glb")
             files[-1].write_bytes(body)
         compare("service", tileset, files, expected)
+        walk("service", [as_files(folder, tileset, files)])
         one = next(iter(expected.features))
         _, body = service.request("GET", f"/collections/town/items/{one}?f=glb")
         (folder / "one.glb").write_bytes(body)
@@ -164,21 +186,22 @@ def compare_service(folder, expected):
 
 
 def validate_others(folder):
-    files, readable = [], 0
+    files, folders = [], []
     for number, document in enumerate(OTHERS):
         out = folder / f"other-{number}"
         done = subprocess.run([PROGRAM, "tiles", document, "-o", str(out)], capture_output=True, text=True, timeout=300, check=False)
         assert done.returncode in (0, 1, 2), f"{document}: status {done.returncode}"
         assert (done.returncode == 2) == (not out.exists()), document
-        readable += done.returncode != 2
+        folders += [out] if out.exists() else []
         files += sorted(out.glob("*/*/*.glb"))
     bad = [(content["file"], content["bad"]) for content in read(files) if content["errors"] or content["warnings"]]
-    check(len(files) > 0 and not bad, f"{len(files)} tiles of {readable} other documents are valid {bad}")
+    check(len(files) > 0 and not bad, f"{len(files)} tiles of {len(folders)} other documents are valid {bad}")
+    walk("other documents", folders)
 
 
 def main():
     NODE.mkdir(parents=True, exist_ok=True)
-    for name in ("package.json", "read_glb.js"):
+    for name in ("package.json", "read_glb.js", "walk_tiles.js"):
         shutil.copy(ROOT / "tests/integration/gltf" / name, NODE / name)
     run("npm", "install", "--no-package-lock", "--no-audit", "--no-fund", "--ignore-scripts", cwd=NODE)
     expected = Expected()

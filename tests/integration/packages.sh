@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Builds the Debian packages from a finished build and uses them on a clean Debian 12: packages.sh BUILD_FOLDER
-# Installs both with apt, judges an example, runs the service as its own user with the file of options of the
+# Installs them with apt, builds a program with the library, judges an example, runs the service as its own user with the file of options of the
 # package, calls it from SQL, and removes it: the data stay. Needs root and the packages of
 # `scripts/install-dependencies containers`.
 set -euo pipefail
@@ -20,7 +20,8 @@ set -euo pipefail
 check() { if "${@:2}"; then echo "ok: $1"; else echo "WRONG: $1"; exit 1; fi; }
 export DEBIAN_FRONTEND=noninteractive
 apt-get update -qq
-apt-get install -y -qq --no-install-recommends postgresql-15 curl >/dev/null 2>&1 # of Debian, not timed
+apt-get install -y -qq --no-install-recommends postgresql-15 curl bash-completion g++ cmake make pkg-config libgmp-dev libmpfr-dev \
+  libexpat1-dev libzstd-dev >/dev/null 2>&1 # of Debian, not timed
 start=$(date +%s)
 apt-get install -y -qq --no-install-recommends /packages/*.deb >/dev/null 2>&1
 seconds=$(($(date +%s) - start))
@@ -33,6 +34,17 @@ status=0
 watertight validate -q --proof tetrahedralization /examples/delft.city.jsonl >/tmp/report || status=$?
 check "with its engines" [ "$status" -eq 1 ]
 check "there is a manual page" grep -q man1/watertight.1 <(dpkg -L watertight) # slim images leave it out
+check "a program is built with the library by CMake" \
+  sh -c 'cmake -S /examples/library -B /tmp/library >/dev/null && cmake --build /tmp/library >/dev/null'
+g++ -std=c++20 /examples/library/main.cpp $(pkg-config --cflags --libs watertight) -o /tmp/program
+check "and by pkg-config" [ -x /tmp/program ]
+/tmp/program /examples/delft.city.jsonl >/tmp/one || true
+/tmp/library/solids_of_a_city /examples/delft.city.jsonl >/tmp/two || true
+check "it judges and packs a city" grep -q '^470 of 480 solids are valid' /tmp/one
+check "both do the same" cmp -s /tmp/one /tmp/two
+completed=$(bash -c '. /usr/share/bash-completion/completions/watertight; COMP_WORDS=(watertight inge) COMP_CWORD=1
+  _watertight; echo "${COMPREPLY[*]}"; COMP_WORDS=(watertight serve --tls) COMP_CWORD=2; _watertight; echo "${COMPREPLY[*]}"')
+check "bash completes commands and options" [ "$completed" = "$(printf 'ingest\n--tls-certificate --tls-key')" ]
 check "the user of the service exists" id -u watertight >/dev/null
 unit=/lib/systemd/system/watertight.service
 command=$(sed -n 's/^ExecStart=//p' "$unit")
@@ -56,7 +68,7 @@ as_postgres 'CREATE EXTENSION watertight'
 version=$(as_postgres "SELECT extversion FROM pg_extension WHERE extname = 'watertight'")
 check "PostgreSQL has the extension ($version)" [ -n "$version" ]
 pg_ctlcluster 15 main stop
-apt-get remove -y -qq watertight postgresql-15-watertight >/dev/null 2>&1
+apt-get remove -y -qq watertight postgresql-15-watertight libwatertight-dev >/dev/null 2>&1
 check "the packages can be removed" [ ! -e /usr/bin/watertight ]
 check "the data stay" [ -d /var/lib/watertight/data ]
 USE

@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
       volume += inspection.report.measures->volume;
     }
   }
-  std::printf("%zu of %zu solids are valid: %.0f cubic metres in %zu bytes\n", valid, solids, volume,
-              bytes);
+  std::printf("%zu of %zu solids are valid: %.0f cubic metres in %zu bytes\n", valid, solids,
+              volume, bytes);
   return valid == solids ? 0 : 1;
 }

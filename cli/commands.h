@@ -196,12 +196,22 @@ struct CompactCommand {
 Exit run(const CompactCommand& command);
 
 struct CollectionsCommand {
-  enum class Action : std::uint8_t { list, info, policy, remove, rename, recount, attributes };
+  enum class Action : std::uint8_t {
+    list,
+    info,
+    policy,
+    rules,
+    remove,
+    rename,
+    recount,
+    attributes
+  };
   StoreChoice store;
   Action action = Action::list;
   std::string id;
   std::string new_id;                       // of rename
   std::string policy;                       // of policy
+  std::vector<std::string> rules;           // of rules: NAME=VALUE; none: no rules
   bool is_json = false;                     // of list, info, recount and attributes
   std::vector<std::string> added, removed;  // of attributes
   bool is_found = false;                    // of attributes: those that there are

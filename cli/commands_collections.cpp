@@ -2,6 +2,7 @@
 //
 // The commands collections (lists, shows, deletes, renames and counts the collections of a store,
 // chooses their attributes) and compact.
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/opened_store.h"
 #include "cli/terminal/printable.h"
+#include "pipeline/collections/collection_rules.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/stored/attributes.h"
 #include "pipeline/stored/compact.h"
@@ -31,6 +33,9 @@ std::string json_of(const store::StoredCollection& collection) {
       {"unproven", {{"features", collection.unproven_features}, {"solids", collection.unproven}}},
       {"invalid", pipeline::to_string(collection.policy)},
       {"srid", collection.srid}};
+  for (const auto& [name, value] : pipeline::rules_in(collection.rules)) {
+    json["rules"][name] = value;
+  }
   if (collection.box) {
     json["boxMin"] = collection.box->min;
     json["boxMax"] = collection.box->max;
@@ -44,11 +49,20 @@ std::string unproven_text(const store::StoredCollection& collection) {
          quantity(collection.unproven, "solid") + " not proven";
 }
 
+std::string rules_of(const store::StoredCollection& collection) {
+  std::string text;
+  for (const auto& [name, value] : pipeline::rules_in(collection.rules)) {
+    text.append(text.empty() ? ", rules: " : " ").append(name).append("=").append(value);
+  }
+  return text;
+}
+
 std::string line_of(const store::StoredCollection& collection) {
   return printable(collection.id) + ": " + quantity(collection.features, "feature") + ", " +
          quantity(collection.solids, "solid") + ", " + quantity(collection.blob_bytes, "byte") +
          " of blobs, " + crs_of(collection) + unproven_text(collection) +
-         ", invalid features: " + std::string(pipeline::to_string(collection.policy));
+         ", invalid features: " + std::string(pipeline::to_string(collection.policy)) +
+         rules_of(collection);
 }
 
 void print(const CollectionsCommand& command, const store::StoredCollection& collection) {
@@ -159,6 +173,20 @@ Status attributes(const CollectionsCommand& command, SolidStore& store) {
   return Done{};
 }
 
+/// Sets the rules of a collection: those that are given, and no others.
+Status set_rules(const CollectionsCommand& command, SolidStore& store) {
+  pipeline::Rules rules;
+  pipeline::IngestOptions checked;
+  for (const std::string& text : command.rules) {
+    const std::size_t sign = std::min(text.find('='), text.size());
+    std::string name = text.substr(0, sign);
+    std::string value = text.substr(std::min(sign + 1, text.size()));
+    if (Status known = pipeline::apply_rule(name, value, checked); !known) return known;
+    rules.emplace_back(std::move(name), std::move(value));
+  }
+  return store.set_rules(command.id, pipeline::rules_text(std::move(rules)));
+}
+
 Status act(const CollectionsCommand& command, SolidStore& store) {
   switch (command.action) {
     case CollectionsCommand::Action::list:
@@ -167,6 +195,8 @@ Status act(const CollectionsCommand& command, SolidStore& store) {
       return show(command, store);
     case CollectionsCommand::Action::policy:
       return store.set_policy(command.id, *pipeline::policy_named(command.policy));
+    case CollectionsCommand::Action::rules:
+      return set_rules(command, store);
     case CollectionsCommand::Action::remove:
       return store.remove_collection(command.id, [] { return false; });
     case CollectionsCommand::Action::rename:

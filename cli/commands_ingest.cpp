@@ -18,7 +18,8 @@
 #include "cli/terminal/progress.h"
 #include "files/files.h"
 #include "files/inputs.h"
-#include "pipeline/stored/collection_header.h"
+#include "pipeline/collections/collection_header.h"
+#include "pipeline/collections/collection_rules.h"
 #include "pipeline/streaming/ingestion.h"
 
 namespace watertight::cli {
@@ -30,9 +31,16 @@ pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Co
   options.threads = command.jobs;
   options.contract = contract;
   if (!command.invalid.empty()) options.policy = *pipeline::policy_named(command.invalid);
-  apply(command.rules, options.certify, options.groups);
   options.surfaces = surface_rule(command.surfaces).reading;
   return options;
+}
+
+/// Sets the rules that the collection keeps for its writes, if it exists. Errors: those of the
+/// store.
+Status apply_rules_of(SolidStore& store, pipeline::IngestOptions& options) {
+  const auto found = store.collection(options.collection);
+  if (found) return pipeline::apply_rules(found->rules, options);
+  return found.error().code == ErrorCode::not_found ? Status(Done{}) : found.error();
 }
 
 /// A run of `watertight ingest`: all files, one after the other.
@@ -111,6 +119,8 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   std::optional<std::uint64_t> whole = input->bytes;
   std::optional<std::size_t> count;
   pipeline::IngestOptions options = options_;
+  if (Status own = apply_rules_of(store, options); !own) return std::move(own).error();
+  apply(command_.rules, options.certify, options.groups);  // what the command line states counts
   options.stages = &stages_;
   options.unnamed = std::filesystem::path(input->name.empty() ? name : input->name).stem().string();
   pipeline::Ingestion ingestion(

@@ -58,7 +58,7 @@ report::ReportHead head_of(const ValidateCommand& command, const pipeline::Strea
   if (!command.leaves_times_out) head.time = time_now();
   head.acceptance = {options.certify.tolerances, options.certify.proof, geometry::kRuleSet};
   head.is_strict = command.rules.is_strict;
-  head.overlap_metres = command.rules.overlap_metres;
+  head.overlap_metres = command.rules.overlap_metres.value_or(0);
   head.also_tolerant = options.certify.also_tolerant;
   head.tolerant_snap_metres = options.certify.tolerant_snap_metres;
   if (command.surfaces != ValidateCommand().surfaces) head.surfaces = command.surfaces;

@@ -61,20 +61,20 @@ void require_store(const StoreChoice& store) {
 void add_rules(CLI::App& sub, RuleChoice& rules) {
   sub.add_option("--planarity", rules.planarity_metres, "largest distance from a plane, metres")
       ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
-      ->capture_default_str();
+      ->default_str("0.01");
   sub.add_option("--planarity-angle", rules.planarity_degrees,
                  "largest angle within a facet, degrees")
       ->check(in_range(1e-6, 90, "from 1e-6 to 90"))
-      ->capture_default_str();
+      ->default_str("20");
   sub.add_option("--proof", rules.proof, "proof of validity")
       ->check(CLI::IsMember({"tetrahedralization", "boundary"}))
-      ->capture_default_str();
+      ->default_str("tetrahedralization");
   sub.add_option(
          "--overlap", rules.overlap_metres,
          "depth to which building parts, composite members and indoor cells may overlap, and gap "
          "between neighbouring cells, metres")
       ->check(in_range(0, 1000, "from 0 to 1000"))
-      ->capture_default_str();
+      ->default_str("0");
   sub.add_flag("--exact-overlaps", rules.are_steps_errors,
                "overlaps no deeper than a step of the coordinates are errors, not warnings");
   sub.add_flag("--strict", rules.is_strict, "only the canonical triangles of facets count");
@@ -475,6 +475,11 @@ void add_collections(CLI::App& app, CollectionsCommand& command, Chosen& chosen)
                    "refuse their documents, skip them, or keep them as they came")
       ->required()
       ->check(CLI::IsMember({"refuse", "skip", "keep"}));
+  add_action(*sub, "rules",
+             "Set the rules by which later writes judge solids: these and no others, so without "
+             "any the usual ones",
+             command, Action::rules)
+      ->add_option("RULE", command.rules, "NAME=VALUE, as planarity=0.02 or proof=boundary");
   add_action(*sub, "delete", "Delete a collection with all its features", command, Action::remove);
   add_action(*sub, "rename", "Give a collection another id", command, Action::rename)
       ->add_option("NEW", command.new_id, "the new id")

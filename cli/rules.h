@@ -3,6 +3,7 @@
 // The rules by which solids are judged, as options of the commands that validate.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "pipeline/pipeline.h"
@@ -11,12 +12,13 @@
 
 namespace watertight::cli {
 
+/// What the command line states; what it does not state stays as it is.
 struct RuleChoice {
-  double planarity_metres = 0.01;
-  double planarity_degrees = 20;
-  double overlap_metres = 0;
-  bool are_steps_errors = false;             // overlaps of a step of the coordinates or less
-  std::string proof = "tetrahedralization";  // or "boundary"
+  std::optional<double> planarity_metres;
+  std::optional<double> planarity_degrees;
+  std::optional<double> overlap_metres;
+  bool are_steps_errors = false;     // overlaps of a step of the coordinates or less
+  std::optional<std::string> proof;  // "tetrahedralization" or "boundary"
   bool is_strict = false;
 };
 
@@ -29,12 +31,15 @@ inline pipeline::SurfaceRule surface_rule(const std::string& name) {
 /// Sets the rules of solids and of groups of them.
 inline void apply(const RuleChoice& rules, CertifyOptions& certify,
                   validate::GroupOptions& groups) {
-  certify.tolerances.planarity_metres = rules.planarity_metres;
-  certify.tolerances.planarity_degrees = rules.planarity_degrees;
-  certify.proof = rules.proof == "boundary" ? Proof::boundary : Proof::tetrahedralization;
-  certify.ladder.strict = rules.is_strict;
-  groups.overlap_metres = rules.overlap_metres;
-  groups.do_steps_warn = !rules.are_steps_errors;
+  Tolerances& tolerances = certify.tolerances;
+  if (rules.planarity_metres) tolerances.planarity_metres = *rules.planarity_metres;
+  if (rules.planarity_degrees) tolerances.planarity_degrees = *rules.planarity_degrees;
+  if (rules.proof) {
+    certify.proof = *rules.proof == "boundary" ? Proof::boundary : Proof::tetrahedralization;
+  }
+  if (rules.is_strict) certify.ladder.strict = true;
+  if (rules.overlap_metres) groups.overlap_metres = *rules.overlap_metres;
+  if (rules.are_steps_errors) groups.do_steps_warn = false;
 }
 
 }  // namespace watertight::cli

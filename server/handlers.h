@@ -88,6 +88,7 @@ Response get_web_file(const RoutedRequest& request);
 Response get_validate(const RoutedRequest& request);
 Response get_collections(const RoutedRequest& request);
 Response get_collection(const RoutedRequest& request);
+Response put_collection(const RoutedRequest& request);
 Response patch_collection(const RoutedRequest& request);
 Response post_recount(const RoutedRequest& request);
 Response delete_collection(const RoutedRequest& request);

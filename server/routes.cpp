@@ -155,6 +155,7 @@ const std::vector<Route>& collection_routes() {
   static const std::vector<Route> table{
       {"GET", "/collections", reading, read, get_collections, {"f", "limit", "after"}},
       {"GET", "/collections/{collectionId}", reading, read, get_collection, {"f"}},
+      {"PUT", "/collections/{collectionId}", small, admin, put_collection, {}},
       {"PATCH", "/collections/{collectionId}", small, admin, patch_collection, {}},
       {"DELETE", "/collections/{collectionId}", small, admin, delete_collection, {}},
       {"POST", "/collections/{collectionId}/recount", small, write, post_recount, {}},

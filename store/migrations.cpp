@@ -466,8 +466,13 @@ struct LaterMigration {
   const char* name;
   std::span<const char* const> statements;
 };
+constexpr const char* kRulesSchema[] = {
+    "ALTER TABLE watertight.collection ADD COLUMN rules text NOT NULL DEFAULT ''",
+    "COMMENT ON COLUMN watertight.collection.rules IS"
+    " 'The rules by which solids are judged in writes, lines NAME=VALUE'"};
 constexpr LaterMigration kLaterMigrations[] = {{"chosen attributes", kAttributeSchema},
-                                               {"pages of solids", kPageSchema}};
+                                               {"pages of solids", kPageSchema},
+                                               {"rules of collections", kRulesSchema}};
 constexpr std::int64_t kNewest = kMoved + std::size(kLaterMigrations);
 
 // The number of the lock is "watertig" in ASCII; any number will do that no other program locks.

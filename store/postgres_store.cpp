@@ -181,6 +181,18 @@ class PostgresStore final : public SolidStore {
         [&](DatabaseSession& session) { return store::set_policy(session, id, policy); });
   }
 
+  Status make_collection(const std::string& id, std::uint32_t srid) override {
+    if (Status checked = check_collection_id(id); !checked) return checked;
+    return write<Done>(
+        [&](DatabaseSession& session) { return store::make_collection(session, id, srid); });
+  }
+
+  Status set_rules(const std::string& id, const std::string& rules) override {
+    if (!check_collection_id(id)) return no_such_collection();
+    return write<Done>(
+        [&](DatabaseSession& session) { return store::set_rules(session, id, rules); });
+  }
+
   Result<std::vector<ChosenAttribute>> attributes(const std::string& collection) override {
     if (!check_collection_id(collection)) return no_such_collection();
     return read<std::vector<ChosenAttribute>>(

@@ -48,6 +48,7 @@ struct StoredCollection {
   std::uint64_t unproven = 0;           // the solids that are not proven
   std::uint64_t unproven_features = 0;  // the features that are not proven (is_proven())
   Policy policy = Policy::refuse;
+  std::string rules;  // by which solids are judged in writes; the store does not understand it
   /// Changes with every change of the features. Collections that have this name in turn never share
   /// one.
   std::string state;
@@ -255,8 +256,13 @@ class SolidStore {
   /// does not depend on the number of features. Errors: not_found; conflict when `new_id` exists;
   /// invalid_argument when it is not an id of a collection.
   virtual Status rename_collection(const std::string& id, const std::string& new_id) = 0;
+  /// Makes a collection without features, in EPSG system `srid` (0: none). Errors: conflict when
+  /// there is one with this id; invalid_argument for an id that no collection can have.
+  virtual Status make_collection(const std::string& id, std::uint32_t srid) = 0;
   /// Sets the policy of a collection for later writes. Errors: not_found.
   virtual Status set_policy(const std::string& id, Policy policy) = 0;
+  /// Sets the rules of a collection for later writes. Errors: not_found.
+  virtual Status set_rules(const std::string& id, const std::string& rules) = 0;
   /// The chosen attributes of a collection, by name. Errors: not_found.
   virtual Result<std::vector<ChosenAttribute>> attributes(const std::string& collection) = 0;
   /// Chooses attributes, or no longer, then fills in the values of all stored features for those

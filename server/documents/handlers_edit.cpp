@@ -158,6 +158,8 @@ Response patch_item(const RoutedRequest& request) {
   }
   pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
   options.collection = request.target.segments[1];
+  const Status own = apply_rules_of(store, options.collection, options);
+  if (!own) return to_response(to_problem(own.error()));
   options.policy = store::Policy::keep;  // the geometry is what it was
   // Another change since the feature was read is not overwritten.
   options.condition = {store::WriteCondition::Kind::versions, {stored->version}};

@@ -1,38 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/documents/rules.h"
 
-#include <charconv>
-
+#include "pipeline/collections/collection_rules.h"
 #include "pipeline/outcome_json.h"
 #include "server/items/preconditions.h"
 
 namespace watertight::server {
-namespace {
-
-Result<bool> parse_flag(const Target& target, std::string_view name) {
-  const std::string* text = target.parameter(name);
-  if (text == nullptr || *text == "false") return false;
-  if (*text == "true") return true;
-  return Error{ErrorCode::invalid_argument, std::string(name) + " is true or false"};
-}
-
-/// Sets `value` from a parameter in (0, limit]; leaves `value` when there is no such parameter.
-Status read_tolerance(const Target& target, std::string_view name, double limit, double& value) {
-  const std::string* text = target.parameter(name);
-  if (text == nullptr) return Done{};
-  double number = 0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
-  if (error != std::errc{} || end != text->data() + text->size() || !(number > 0) ||
-      number > limit) {
-    return Error{ErrorCode::invalid_argument, std::string(name) + " is a number above 0, at most " +
-                                                  std::to_string(static_cast<int>(limit))};
-  }
-  value = number;
-  return Done{};
-}
-
-}  // namespace
-
 pipeline::IngestOptions ingest_options(const Service& service, const CancelPoll& is_cancelled) {
   pipeline::IngestOptions options;
   options.threads = service.options.threads_per_request;
@@ -51,31 +24,20 @@ Result<formats::Surfaces> stored_surfaces(const Target& target) {
                "surfaces is ignore or as-solids where they are stored"};
 }
 
-Status read_rules(const Target& target, pipeline::IngestOptions& ingest) {
-  CertifyOptions& options = ingest.certify;
-  constexpr double kWidestMetres = 1000;
-  constexpr double kWidestDegrees = 90;
-  Status status =
-      read_tolerance(target, "planarity", kWidestMetres, options.tolerances.planarity_metres);
-  if (!status) return status;
-  status = read_tolerance(target, "planarity-angle", kWidestDegrees,
-                          options.tolerances.planarity_degrees);
-  if (!status) return status;
-  status = read_tolerance(target, "overlap", kWidestMetres, ingest.groups.overlap_metres);
-  if (!status) return status;
-  const auto exact_overlaps = parse_flag(target, "exact-overlaps");
-  if (!exact_overlaps) return exact_overlaps.error();
-  ingest.groups.do_steps_warn = !*exact_overlaps;
-  const auto strict = parse_flag(target, "strict");
-  if (!strict) return strict.error();
-  options.ladder.strict = *strict;
-  const std::string* proof = target.parameter("proof");
-  if (proof == nullptr || *proof == "tetrahedralization") return Done{};
-  if (*proof != "boundary") {
-    return Error{ErrorCode::invalid_argument, "proof is tetrahedralization or boundary"};
+Status read_rules(const Target& target, pipeline::IngestOptions& options) {
+  for (const std::string_view name : pipeline::kRuleNames) {
+    const std::string* value = target.parameter(name);
+    if (value == nullptr) continue;
+    if (Status read = pipeline::apply_rule(name, *value, options); !read) return read;
   }
-  options.proof = Proof::boundary;
   return Done{};
+}
+
+Status apply_rules_of(SolidStore& store, const std::string& collection,
+                      pipeline::IngestOptions& options) {
+  const auto found = store.collection(collection);
+  if (found) return pipeline::apply_rules(found->rules, options);
+  return found.error().code == ErrorCode::not_found ? Status(Done{}) : found.error();
 }
 
 Status read_submit_rules(const Target& target, pipeline::IngestOptions& options) {
@@ -94,6 +56,8 @@ Status read_submit_rules(const Target& target, pipeline::IngestOptions& options)
 Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request) {
   pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
   options.collection = request.target.segments[1];
+  const Status own = apply_rules_of(*request.service.store, options.collection, options);
+  if (!own) return own.error();
   if (Status rules = read_submit_rules(request.target, options); !rules) {
     return std::move(rules).error();
   }

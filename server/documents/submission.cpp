@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/city_json/city_json.h"
+#include "pipeline/collections/collection_header.h"
 #include "pipeline/container.h"
-#include "pipeline/stored/collection_header.h"
 
 namespace watertight::server {
 namespace {

@@ -56,7 +56,7 @@ Response job_response(const RoutedRequest& request, unsigned status, const JobVi
 
 /// The job that a request asks for. Errors: invalid_argument.
 Result<Job> ordered_job(const RoutedRequest& request, const std::string& owner) {
-  const auto options = job_options(request.service, request.request.target, {});
+  const auto options = job_options(request.service, request.request.target, false, {});
   if (!options) return options.error();
   Job job;
   job.target = request.request.target;

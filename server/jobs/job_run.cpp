@@ -11,8 +11,8 @@
 #include "base/json_text.h"
 #include "files/inputs.h"
 #include "files/zip_documents.h"
+#include "pipeline/collections/collection_header.h"
 #include "pipeline/outcome_json.h"
-#include "pipeline/stored/collection_header.h"
 #include "pipeline/streaming/ingestion.h"
 #include "server/documents/rules.h"
 #include "server/metrics/metrics.h"
@@ -166,7 +166,7 @@ Result<pipeline::IngestCounts> Run::store(pipeline::Ingestion& ingestion, files:
 }
 
 Result<pipeline::IngestCounts> Run::ingest(const files::InputFile& input) {
-  auto options = job_options(run_.service, job_.target, run_.is_cancelled);
+  auto options = job_options(run_.service, job_.target, true, run_.is_cancelled);
   if (!options) return std::move(options).error();
   const std::string stem = std::filesystem::path(input.name).stem().string();
   options->unnamed = stem.empty() ? job_.collection : stem;
@@ -259,7 +259,7 @@ Status Run::all() {
 }  // namespace
 
 Result<pipeline::IngestOptions> job_options(const Service& service, const std::string& target,
-                                            const CancelPoll& is_cancelled) {
+                                            bool reads_collection, const CancelPoll& is_cancelled) {
   const auto parsed = parse_target(target);
   if (!parsed) return parsed.error();
   pipeline::IngestOptions options = ingest_options(service, is_cancelled);
@@ -272,6 +272,10 @@ Result<pipeline::IngestOptions> job_options(const Service& service, const std::s
     return Error{ErrorCode::invalid_argument, checked.error().message};
   }
   options.collection = *collection;
+  if (reads_collection) {
+    const Status own = apply_rules_of(*service.store, *collection, options);
+    if (!own) return own.error();
+  }
   if (Status rules = read_submit_rules(*parsed, options); !rules) return std::move(rules).error();
   return options;
 }

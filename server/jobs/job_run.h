@@ -20,9 +20,10 @@ struct JobRun {
   std::function<void(const JobProgress&)> on_progress;  // from one thread at a time
 };
 
-/// Options of a document of a job, by the parameters of its request. Errors: invalid_argument.
+/// Options of a document of a job, by the parameters of its request and, with `reads_collection`,
+/// the rules of its collection. Errors: invalid_argument; those of the store, if it is read.
 Result<pipeline::IngestOptions> job_options(const Service& service, const std::string& target,
-                                            const CancelPoll& is_cancelled);
+                                            bool reads_collection, const CancelPoll& is_cancelled);
 
 /// Does what is left of a job and sets its state to successful or failed. A document that is not
 /// stored does not keep the others from being stored. Errors, after which the job can go on with

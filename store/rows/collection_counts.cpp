@@ -15,7 +15,7 @@ constexpr const char* kCountsLock = "x'636f756e74626f78'::bigint";
 
 const char* const kCounts =
     "c.features, c.solids, c.blob_bytes, c.min_x, c.min_y, c.min_z, c.max_x, c.max_y, c.max_z,"
-    " c.generation, c.changes, c.unproven, c.unproven_features, c.policy::int8";
+    " c.generation, c.changes, c.unproven, c.unproven_features, c.policy::int8, c.rules";
 
 /// The changes of each collection, summed up, from a table of changes.
 std::string summed(const char* changes) {
@@ -37,7 +37,7 @@ std::string collections_from(const char* collections) {
          " greatest(c.max_x, d.max_x), greatest(c.max_y, d.max_y), greatest(c.max_z, d.max_z),"
          " c.generation, c.changes + coalesce(d.changes, 0),"
          " c.unproven + coalesce(d.unproven, 0),"
-         " c.unproven_features + coalesce(d.unproven_features, 0), c.policy::int8"
+         " c.unproven_features + coalesce(d.unproven_features, 0), c.policy::int8, c.rules"
          " FROM " +
          std::string(collections) +
          " c JOIN watertight.document h ON h.key = c.document"
@@ -60,6 +60,7 @@ StoredCollection collection_of(const Rows& rows, int row) {
   found.unproven = static_cast<std::uint64_t>(rows.int8(row, 14));
   found.unproven_features = static_cast<std::uint64_t>(rows.int8(row, 15));
   found.policy = static_cast<Policy>(rows.int8(row, 16));
+  found.rules = rows.text(row, 17);
   return found;
 }
 

@@ -38,16 +38,54 @@ Result<Done> rename_collection(DatabaseSession& connection, const std::string& i
   return Done{};
 }
 
-Result<Done> set_policy(DatabaseSession& connection, const std::string& id, Policy policy) {
-  send_gate(connection, id, Gate::shared);
+Result<Done> make_collection(DatabaseSession& connection, const std::string& id,
+                             std::uint32_t srid) {
+  send_gate(connection, id, Gate::alone);
+  const Result<Rows> document = connection.ask(
+      "INSERT INTO watertight.document (digest, content) SELECT sha256(''), ''"
+      " WHERE NOT EXISTS (SELECT FROM watertight.document WHERE digest = sha256(''))"
+      " ON CONFLICT DO NOTHING");
+  if (!document) return document.error();
   const Result<Rows> rows = connection.ask(
-      "UPDATE watertight.collection SET policy = $2, changes = changes + 1"
-      " WHERE name = $1 AND policy <> $2 RETURNING 1::int8",
-      Parameters().text(id).int8(static_cast<std::int64_t>(policy)));
+      "INSERT INTO watertight.collection (name, srid, document)"
+      " SELECT $1, $2, (SELECT key FROM watertight.document WHERE digest = sha256(''))"
+      " ON CONFLICT DO NOTHING RETURNING 1::int8",
+      Parameters().text(id).int8(srid));
+  if (!rows) return rows.error();
+  if (rows->size() == 0) {
+    return Error{ErrorCode::conflict, "there is a collection '" + id + "' already"};
+  }
+  return Done{};
+}
+
+namespace {
+
+/// Sets a column of a collection, by a statement that changes nothing if it has the value already.
+Result<Done> set_column(DatabaseSession& connection, const std::string& id, const char* statement,
+                        const Parameters& parameters) {
+  send_gate(connection, id, Gate::shared);
+  const Result<Rows> rows = connection.ask(statement, parameters);
   if (!rows) return rows.error();
   const Result<StoredCollection> found = read_collection(connection, id);
   if (!found) return found.error();
   return Done{};
+}
+
+}  // namespace
+
+Result<Done> set_policy(DatabaseSession& connection, const std::string& id, Policy policy) {
+  return set_column(connection, id,
+                    "UPDATE watertight.collection SET policy = $2, changes = changes + 1"
+                    " WHERE name = $1 AND policy <> $2 RETURNING 1::int8",
+                    Parameters().text(id).int8(static_cast<std::int64_t>(policy)));
+}
+
+Result<Done> set_rules(DatabaseSession& connection, const std::string& id,
+                       const std::string& rules) {
+  return set_column(connection, id,
+                    "UPDATE watertight.collection SET rules = $2, changes = changes + 1"
+                    " WHERE name = $1 AND rules <> $2 RETURNING 1::int8",
+                    Parameters().text(id).text(rules));
 }
 
 Result<std::string> read_hidden_collection(DatabaseSession& connection) {

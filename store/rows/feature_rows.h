@@ -64,7 +64,11 @@ void send_gate(DatabaseSession& connection, std::string_view collection, Gate ga
 Result<std::string> hide_collection(DatabaseSession& connection, const std::string& id);
 /// Errors: not_found, conflict.
 /// Sets the policy of a collection. Errors: not_found.
+Result<Done> make_collection(DatabaseSession& connection, const std::string& id,
+                             std::uint32_t srid);
 Result<Done> set_policy(DatabaseSession& connection, const std::string& id, Policy policy);
+Result<Done> set_rules(DatabaseSession& connection, const std::string& id,
+                       const std::string& rules);
 Result<Done> rename_collection(DatabaseSession& connection, const std::string& id,
                                const std::string& new_id);
 /// The key of a collection without a name; "" when there is none.

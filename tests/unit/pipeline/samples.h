@@ -99,6 +99,21 @@ class MemoryStore : public SolidStore {
     features_.insert(std::move(moved));
     return Done{};
   }
+  Status make_collection(const std::string& id, std::uint32_t srid) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (features_.contains(id)) return Error{ErrorCode::conflict, "there is a " + id};
+    features_[id];
+    srids_[id] = srid;
+    return Done{};
+  }
+  Status set_rules(const std::string& id, const std::string& rules) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    if (!features_.contains(id)) return Error{ErrorCode::not_found, "no collection " + id};
+    rules_[id] = rules;
+    return Done{};
+  }
   Status set_policy(const std::string& id, store::Policy policy) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
@@ -365,6 +380,8 @@ class MemoryStore : public SolidStore {
       }
     }
     if (policies_.contains(id)) collection.policy = policies_.at(id);
+    if (rules_.contains(id)) collection.rules = rules_.at(id);
+    if (collection.features == 0 && srids_.contains(id)) collection.srid = srids_.at(id);
     collection.state = std::to_string(version_) + "-" + std::to_string(collection.features);
     return collection;
   }
@@ -373,6 +390,8 @@ class MemoryStore : public SolidStore {
   std::map<std::string, std::map<std::string, StoredFeature>> features_;
   std::map<std::string, std::set<std::string>> attributes_;
   std::map<std::string, store::Policy> policies_;
+  std::map<std::string, std::string> rules_;
+  std::map<std::string, std::uint32_t> srids_;  // of collections that were made without features
   std::uint64_t version_ = 0;
 };
 

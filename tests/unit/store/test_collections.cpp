@@ -68,6 +68,41 @@ TEST_CASE("pages walk through all collections, each with its own counts") {
   CHECK(store->collections(5, "\xFF").error().code == ErrorCode::invalid_argument);
 }
 
+TEST_CASE("a collection is made before its first feature, with its CRS, policy and rules") {
+  const Database database;
+  const auto store = database.store();
+  REQUIRE(store->make_collection("town", 7415));
+  CHECK(store->make_collection("town", 7415).error().code == ErrorCode::conflict);
+  CHECK(store->make_collection("no/name", 0).error().code == ErrorCode::invalid_argument);
+  CHECK(store->set_rules("none", "x").error().code == ErrorCode::not_found);
+  const auto made = store->collection("town");
+  REQUIRE(made);
+  CHECK(made->srid == 7415);
+  CHECK(made->features == 0);
+  CHECK(made->header.empty());
+  CHECK(made->rules.empty());
+  REQUIRE(store->set_rules("town", "planarity=0.02\n"));
+  const auto changed = store->collection("town");
+  REQUIRE(changed);
+  CHECK(changed->rules == "planarity=0.02\n");
+  CHECK(changed->state != made->state);
+  REQUIRE(store->set_rules("town", "planarity=0.02\n"));
+  CHECK(store->collection("town")->state == changed->state);
+  // Another session sees them; so do pages and a recount; a rename keeps them.
+  CHECK(database.store()->collections(10, "")->collections[0].rules == "planarity=0.02\n");
+  CHECK(store->recount("town")->rules == "planarity=0.02\n");
+  CHECK(store->list({"town", 10, {}, {}, 0, {}, {}})->features.empty());
+  put_one(*store, feature_of("town", "a"));
+  const StoredFeature other = feature_of("town", "b", 28992);
+  CHECK(store->put(std::span(&other, 1)).error().code == ErrorCode::conflict);
+  REQUIRE(store->rename_collection("town", "city"));
+  CHECK(store->collection("city")->rules == "planarity=0.02\n");
+  CHECK(store->collection("city")->features == 1);
+  REQUIRE(store->remove_collection("city", {}));
+  REQUIRE(store->make_collection("city", 0));
+  CHECK(store->collection("city")->rules.empty());
+}
+
 TEST_CASE("a removed collection is gone with its features, its CRS and its header") {
   const Database database;
   const auto store = database.store();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/stored/collection_header.h"
+#include "pipeline/collections/collection_header.h"
 
 namespace watertight::pipeline {
 

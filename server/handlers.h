@@ -107,6 +107,7 @@ Response get_tileset(const RoutedRequest& request);
 Response get_tile(const RoutedRequest& request);
 Response get_export(const RoutedRequest& request);
 Response get_report(const RoutedRequest& request);
+Response get_statistics(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
 Response post_convert(const RoutedRequest& request);
 Response post_encode(const RoutedRequest& request);

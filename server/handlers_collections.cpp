@@ -60,6 +60,7 @@ Json collection_json(const store::StoredCollection& collection, const std::strin
        link(self + "/report?proven=false&f=html", "related", kHtml, "report of what is not proven"),
        link(self + "/report?proven=false&f=geojson", "related", kGeoJson,
             "findings of what is not proven, as a layer"),
+       link(self + "/statistics", "related", kJson, "volumes, findings by code, bytes"),
        link(self + "/3dtiles", "alternate", "application/json+3dtiles", "all of it as 3D Tiles"),
        link(self + "/export?f=wt", "enclosure", kContainer, "all of it as a Watertight file"),
        link(self + "/export?f=gpkg", "enclosure", kGeoPackage, "all of it as a GeoPackage"),

@@ -176,6 +176,7 @@ const std::vector<Route>& collection_routes() {
        read,
        get_report,
        {std::begin(kReportParameters), std::end(kReportParameters)}},
+      {"GET", "/collections/{collectionId}/statistics", computing, read, get_statistics, {"f"}},
       {"GET", "/collections/{collectionId}/3dtiles", computing, read, get_tileset, {"compression"}},
       {"GET",
        "/collections/{collectionId}/3dtiles/content",

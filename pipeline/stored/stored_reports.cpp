@@ -30,16 +30,6 @@ struct ReportTexts {
   std::string report;
 };
 
-std::optional<geometry::Measures> measures_of(const Solid& submitted) {
-  const Solid merged = geometry::merge_equal_vertices(submitted).solid;
-  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(merged);
-  const bool is_whole = std::all_of(facets.state.begin(), facets.state.end(), [](auto state) {
-    return state == tessellate::FacetState::triangulated;
-  });
-  if (!is_whole || merged.shell_count() == 0) return std::nullopt;
-  return geometry::measure(facets.divided_solid(merged), facets.triangles);
-}
-
 /// The texts of a solid of which there is nothing to say.
 ReportTexts expected_texts(const Solid& solid, const Acceptance& acceptance, bool is_proven) {
   Report report;
@@ -139,6 +129,16 @@ struct Lines {
 };
 
 }  // namespace
+
+std::optional<geometry::Measures> measures_of(const Solid& submitted) {
+  const Solid merged = geometry::merge_equal_vertices(submitted).solid;
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(merged);
+  const bool is_whole = std::all_of(facets.state.begin(), facets.state.end(), [](auto state) {
+    return state == tessellate::FacetState::triangulated;
+  });
+  if (!is_whole || merged.shell_count() == 0) return std::nullopt;
+  return geometry::measure(facets.divided_solid(merged), facets.triangles);
+}
 
 std::string report_lines(const EncodedFeature& feature) {
   const auto expected = expected_texts(feature, Reports::all, {});

@@ -6,6 +6,7 @@
 // line has what stands between the common start and end of the expected text and the text.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "base/limits.h"
@@ -17,6 +18,10 @@ namespace watertight::pipeline {
 /// The lines, each with a line feed; "" when all is as expected. Cost: decodes and triangulates
 /// the solids.
 std::string report_lines(const EncodedFeature& feature);
+
+/// The measures of a solid whose facets have triangulations; nothing for another. Cost: that of
+/// triangulating the facets.
+std::optional<geometry::Measures> measures_of(const Solid& submitted);
 
 /// Takes the lines of report_lines() off the front of the skeleton. Sets the findings, and measures
 /// and reports of the chosen solids. Errors: malformed.

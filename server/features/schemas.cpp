@@ -3,14 +3,10 @@
 // Handlers of schemas: what can be queried, what gives an order, and the properties of features.
 #include "server/features/schemas.h"
 
-#include <algorithm>
-#include <memory>
-
 #include "pipeline/shown/properties.h"
 #include "pipeline/shown/shown_feature.h"
 #include "server/features/links.h"
-#include "server/items/preconditions.h"
-#include "server/items/representation_cache.h"
+#include "server/items/kept_answer.h"
 
 namespace watertight::server {
 namespace {
@@ -142,20 +138,11 @@ Response get_schema(const RoutedRequest& request) {
   if (auto refusal = unless_schema(request)) return *std::move(refusal);
   const auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  const std::string etag = etag_of_state(collection->state, "schema");
-  if (auto unneeded = unless_needed(request.request, etag)) return *std::move(unneeded);
-  std::string key = base_url(request);
-  key.append("/").append(collection->id).append("/schema/").append(collection->state);
-  RepresentationCache* cache = request.service.cache;
-  if (cache != nullptr) {
-    if (const auto kept = cache->find(key)) return *kept;
-  }
-  const auto schema = schema_of_features(request);
-  if (!schema) return to_response(to_problem(schema.error()));
-  Response response = json_response(*schema, kSchemaType);
-  response.headers.push_back({"ETag", etag});
-  if (cache != nullptr) cache->keep(key, std::make_shared<const Response>(response));
-  return response;
+  return kept_or_made(request, *collection, "schema", kSchemaType, [&]() -> Result<std::string> {
+    const auto schema = schema_of_features(request);
+    if (!schema) return schema.error();
+    return schema->dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  });
 }
 
 }  // namespace watertight::server

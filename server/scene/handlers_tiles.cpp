@@ -12,8 +12,7 @@
 #include <span>
 
 #include "server/handlers.h"
-#include "server/items/preconditions.h"
-#include "server/items/representation_cache.h"
+#include "server/items/kept_answer.h"
 #include "server/scene/stored_mesh.h"
 #include "tiles/glb.h"
 #include "tiles/tileset.h"
@@ -301,32 +300,13 @@ Result<Bytes> content_of(const RoutedRequest& request, const TileRequest& wanted
       is_plain(request.target) ? tiles::Compression::none : tiles::Compression::meshopt);
 }
 
-/// The answer for a state of the collection, from the cache or made by `make`.
-template <class Make>
-Response kept_or_made(const RoutedRequest& request, const store::StoredCollection& collection,
-                      std::string_view type, const Make& make) {
-  const std::string etag = etag_of_state(collection.state, "3dtiles");
-  if (auto unneeded = unless_needed(request.request, etag)) return *std::move(unneeded);
-  std::string key = collection.id;
-  key.append("/3dtiles/").append(collection.state).append("/").append(request.request.target);
-  RepresentationCache* cache = request.service.cache;
-  if (cache != nullptr) {
-    if (const auto kept = cache->find(key)) return *kept;
-  }
-  auto body = make();
-  if (!body) return to_response(to_problem(body.error()));
-  Response response{200, std::string(type), *std::move(body), {{"ETag", etag}}};
-  if (cache != nullptr) cache->keep(key, std::make_shared<const Response>(response));
-  return response;
-}
-
 }  // namespace
 
 Response get_tileset(const RoutedRequest& request) {
   if (auto refusal = refused_compression(request.target)) return *std::move(refusal);
   const auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  return kept_or_made(request, *collection, kJson,
+  return kept_or_made(request, *collection, "3dtiles", kJson,
                       [&] { return tileset_of(request, *collection); });
 }
 
@@ -339,7 +319,7 @@ Response get_tile(const RoutedRequest& request) {
   }
   const auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
-  return kept_or_made(request, *collection, kGltf, [&]() -> Result<std::string> {
+  return kept_or_made(request, *collection, "3dtiles", kGltf, [&]() -> Result<std::string> {
     const auto content = content_of(request, *wanted, collection->srid);
     if (!content) return content.error();
     return std::string(as_text(*content));

@@ -96,5 +96,33 @@ TEST_CASE_METHOD(Fixture, "the rules of a collection count where a request state
   CHECK(post("/collections/town/items", bent()).status == 422);
 }
 
+TEST_CASE_METHOD(Fixture, "statistics sum up volumes, findings and bytes") {
+  const std::string text = samples::sequence({samples::feature("a"), samples::feature("b"),
+                                              samples::feature("open", samples::kOpenFacets)});
+  REQUIRE(post("/collections/town/items?invalid=keep", text).status == 201);
+  const auto response = get("/collections/town/statistics");
+  REQUIRE(response.status == 200);
+  const Json json = Json::parse(response.body);
+  CHECK(json["features"] == 3);
+  REQUIRE(json["levels"].size() == 1);
+  const Json& level = json["levels"][0];
+  CHECK(level["lod"] == "2.2");
+  CHECK(level["solids"] == 3);
+  CHECK(level["proven"] == 2);
+  CHECK(level["volume"] == 5.0);  // two boxes of 1 x 1 x 2.5
+  CHECK(level["area"] == 24.0);
+  REQUIRE(json["findings"].size() == 1);
+  CHECK(json["findings"][0]["code"] == 302);
+  CHECK(json["findings"][0]["name"] == "SHELL_NOT_CLOSED");
+  CHECK(json["findings"][0]["count"].get<int>() >= 1);
+  CHECK(json["bytes"]["arrays"] == 2 * (8 * 24 + 24 * 4));
+  CHECK(json["bytes"]["solids"].get<int>() > 0);
+  CHECK(json["ratio"].get<double>() > 1);
+  const auto unchanged =
+      get("/collections/town/statistics", {{"if-none-match", *header_of(response, "ETag")}});
+  CHECK(unchanged.status == 304);
+  CHECK(get("/collections/none/statistics").status == 404);
+}
+
 }  // namespace
 }  // namespace watertight

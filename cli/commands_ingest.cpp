@@ -43,6 +43,21 @@ Status apply_rules_of(SolidStore& store, pipeline::IngestOptions& options) {
   return found.error().code == ErrorCode::not_found ? Status(Done{}) : found.error();
 }
 
+/// Says which stored features have the box of another one.
+void tell_twins(const std::string& file, const pipeline::IngestCounts& counts,
+                const std::vector<store::Twins>& twins) {
+  constexpr std::size_t kMostNamed = 3;
+  if (counts.twins == 0) return;
+  std::string text = quantity(counts.twins, "feature has", "features have") +
+                     " the same box as another one of the collection, so they may be there twice:";
+  for (std::size_t i = 0; i < std::min(kMostNamed, twins.size()); ++i) {
+    text.append(i == 0 ? " '" : ", '").append(twins[i].id).append("' as '");
+    text.append(twins[i].other).append("'");
+  }
+  if (counts.twins > kMostNamed) text += ", ...";
+  std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), printable(text).c_str());
+}
+
 /// A run of `watertight ingest`: all files, one after the other.
 class IngestRun {
  public:
@@ -152,7 +167,9 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   if (!command_.is_quiet && !command_.is_json) tell_losses(name, opened->reader.document());
   if (Status added = ingestion.add(opened->reader); !added) return std::move(added).error();
   run.summary.add_file_bytes(opened->reader.bytes_read());
-  return ingestion.finish();
+  auto counts = ingestion.finish();
+  if (counts && !command_.is_quiet) tell_twins(name, *counts, ingestion.twins());
+  return counts;
 }
 
 /// Remembers which features this file stored, and prints which features of earlier files of the run

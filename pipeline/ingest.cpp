@@ -355,6 +355,7 @@ void IngestCounts::add(const IngestCounts& other) {
   stored += other.stored;
   unproven += other.unproven;
   unproven_features += other.unproven_features;
+  twins += other.twins;
   verdict = worse(verdict, other.verdict);
 }
 

@@ -164,6 +164,13 @@ std::string outcome_json(const IngestOutcome& outcome) {
   json.key("counts").open('{').key("features").value(outcome.total);
   json.key("valid").value(outcome.total - outcome.invalid - outcome.undecided);
   json.key("invalid").value(outcome.invalid).key("undecided").value(outcome.undecided).close('}');
+  if (outcome.twins > 0) {
+    json.key("duplicates").open('{').key("count").value(outcome.twins).key("first").open('[');
+    for (const store::Twins& twins : outcome.first_twins) {
+      json.open('{').key("id").value(twins.id).key("sameBoxAs").value(twins.other).close('}');
+    }
+    json.close(']').close('}');
+  }
   json.key("featuresOmitted").value(outcome.total - outcome.features.size());
   json.key("features").open('[');
   for (const FeatureOutcome& feature : outcome.features) {

@@ -241,15 +241,20 @@ struct IngestCounts {
   std::uint64_t stored = 0;
   std::uint64_t unproven = 0;           // the number of solids that were kept without proof
   std::uint64_t unproven_features = 0;  // the number of features that were kept without proof
-  Verdict verdict = Verdict::valid;     // the worst of all features
+  std::uint64_t twins = 0;  // the number of stored features that have the box of another one
+  Verdict verdict = Verdict::valid;  // the worst of all features
 
   void add(Verdict of_feature);
   /// Adds the numbers of another document.
   void add(const IngestCounts& other);
 };
 
+/// The most twins that are named.
+inline constexpr std::size_t kMostTwins = 100;
+
 struct IngestOutcome : IngestCounts {
-  std::vector<FeatureOutcome> features;  // in document order; all, or those that were kept
+  std::vector<FeatureOutcome> features;        // in document order; all, or those that were kept
+  std::vector<store::Twins> first_twins = {};  // at most kMostTwins
 };
 
 /// A document encoded feature by feature, but not stored.

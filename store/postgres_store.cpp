@@ -298,6 +298,13 @@ class PostgresStore final : public SolidStore {
     });
   }
 
+  Result<std::vector<Twins>> twins(const std::string& collection,
+                                   std::span<const std::string> ids) override {
+    if (!check_collection_id(collection)) return no_such_collection();
+    return read<std::vector<Twins>>(
+        [&](DatabaseSession& session) { return read_twins(session, collection, ids); });
+  }
+
   Result<PlacedPage> places(const std::string& collection, std::uint64_t limit,
                             const std::string& after) override {
     if (!check_collection_id(collection)) return no_such_collection();

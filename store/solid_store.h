@@ -204,6 +204,13 @@ struct RankQuery {
   std::optional<SizeRank> below;  // ranks are below it
 };
 
+/// Two features of a collection in the same place: their boxes are equal, which tells of one thing
+/// under two ids.
+struct Twins {
+  std::string id;
+  std::string other;
+};
+
 /// The format and header that the features of one document share.
 struct StoredHeader {
   std::string format;
@@ -321,6 +328,11 @@ class SolidStore {
   /// not_found when there is no such collection. Cost: that of reading the boxes in the part of the
   /// plane.
   virtual Result<std::vector<std::string>> ranked(const RankQuery& query, std::uint64_t limit) = 0;
+  /// Of the features with these ids those that have the box of another one, each once with one such
+  /// other, in order of their ids. Errors: not_found when there is no such collection. Cost: two
+  /// looks into indexes for each id.
+  virtual Result<std::vector<Twins>> twins(const std::string& collection,
+                                           std::span<const std::string> ids) = 0;
   /// The formats and headers of the documents that the features of a collection came in, at most
   /// `limit`; empty for a collection that does not exist.
   virtual Result<std::vector<StoredHeader>> documents(const std::string& collection,

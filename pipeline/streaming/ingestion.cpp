@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/streaming/ingestion.h"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -184,7 +185,29 @@ Result<IngestCounts> Ingestion::finish() {
     if (Status set = store_.set_policy(options_.collection, *new_policy_); !set) return set.error();
   }
   spool_.clear();
+  find_twins();
   return counts_;
+}
+
+/// Looks for features that were stored and have the box of another one, which is the sign of one
+/// thing that came twice. What is stored stays, whatever becomes of the search.
+void Ingestion::find_twins() {
+  constexpr std::size_t kIdsAtOnce = 1000;
+  std::vector<const std::string*> sorted;
+  for (const std::string& id : ids_) sorted.push_back(&id);
+  std::sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return *a < *b; });
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    ids.push_back(*sorted[i]);
+    if (ids.size() < kIdsAtOnce && i + 1 < sorted.size()) continue;
+    auto found = store_.twins(options_.collection, ids);
+    if (!found) return;
+    counts_.twins += found->size();
+    for (store::Twins& twins : *found) {
+      if (twins_.size() < kMostTwins) twins_.push_back(std::move(twins));
+    }
+    ids.clear();
+  }
 }
 
 void OutcomeKeeper::add(FeatureOutcome&& outcome) {
@@ -203,9 +226,9 @@ void OutcomeKeeper::add(FeatureOutcome&& outcome) {
   kept_.push_back({std::move(outcome), bytes, rank});
 }
 
-IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts,
-                                     const std::vector<std::uint64_t>& versions) && {
-  IngestOutcome all{counts, {}};
+IngestOutcome OutcomeKeeper::outcome(const IngestCounts& counts, const Ingestion& ingestion) && {
+  const std::vector<std::uint64_t>& versions = ingestion.versions();
+  IngestOutcome all{counts, {}, ingestion.twins()};
   for (Kept& kept : kept_) {
     kept.outcome.is_stored = kept.outcome.is_stored && kept.rank < versions.size();
     if (kept.outcome.is_stored) kept.outcome.version = versions[kept.rank];
@@ -225,7 +248,7 @@ Result<IngestOutcome> ingest(formats::FeatureReader& reader, SolidStore& store,
   if (Status added = ingestion.add(reader); !added) return std::move(added).error();
   const auto counts = ingestion.finish();
   if (!counts) return counts.error();
-  return std::move(keeper).outcome(*counts, ingestion.versions());
+  return std::move(keeper).outcome(*counts, ingestion);
 }
 
 Result<IngestOutcome> ingest(Document document, SolidStore& store, delaunay::EngineWorkers* workers,

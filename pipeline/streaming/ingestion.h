@@ -53,6 +53,8 @@ class Ingestion {
     return counts_.verdict != Verdict::valid &&
            options_.policy.value_or(Policy::refuse) == Policy::refuse;
   }
+  /// The first stored features that have the box of another one; empty before finish().
+  const std::vector<store::Twins>& twins() const { return twins_; }
   /// The versions of the stored features in their order; empty before finish().
   const std::vector<std::uint64_t>& versions() const { return versions_; }
 
@@ -62,6 +64,7 @@ class Ingestion {
   Status look_up_collection();
   Status check_srid(const FeatureOutcome& outcome, std::uint32_t srid);
   Status check_id(FeatureOutcome& outcome);
+  void find_twins();
 
   SolidStore& store_;
   delaunay::EngineWorkers* workers_;
@@ -77,6 +80,7 @@ class Ingestion {
   std::uint64_t unnamed_ = 0;          // the number of features without an id
   IngestCounts counts_;
   std::vector<std::uint64_t> versions_;
+  std::vector<store::Twins> twins_;
 };
 
 /// Keeps the outcomes of features for an answer: all while they are few and their reports short,
@@ -86,8 +90,8 @@ class OutcomeKeeper {
   OutcomeKeeper(std::size_t most, std::uint64_t most_bytes)
       : most_(most), most_bytes_(most_bytes) {}
   void add(FeatureOutcome&& outcome);
-  /// The outcomes with what finish() of the ingestion has made of them.
-  IngestOutcome outcome(const IngestCounts& counts, const std::vector<std::uint64_t>& versions) &&;
+  /// The outcomes with what finish() of the ingestion has made of them and counted.
+  IngestOutcome outcome(const IngestCounts& counts, const Ingestion& ingestion) &&;
 
  private:
   struct Kept {

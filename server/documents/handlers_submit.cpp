@@ -72,7 +72,7 @@ Response post_items(const RoutedRequest& request) {
     return to_response(*problem);
   const auto counts = ingestion.finish();
   if (!counts) return to_response(to_problem(counts.error()));
-  const auto outcome = std::move(keeper).outcome(*counts, ingestion.versions());
+  const auto outcome = std::move(keeper).outcome(*counts, ingestion);
   return ingestion.is_refused() ? refused_document(outcome, "nothing was stored")
                                 : answer_of(request, outcome);
 }

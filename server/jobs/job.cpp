@@ -27,7 +27,8 @@ Json counts_json(const pipeline::IngestCounts& counts) {
           {"undecided", counts.undecided},
           {"stored", counts.stored},
           {"unprovenFeatures", counts.unproven_features},
-          {"unprovenSolids", counts.unproven}};
+          {"unprovenSolids", counts.unproven},
+          {"duplicates", counts.twins}};
 }
 
 /// Reads members of the text of a job, and remembers whether one was missing or of another type.
@@ -115,6 +116,7 @@ std::string text_of(const Job& job) {
   json["state"] = to_string(job.state);
   for_each_member(job, [&](const char* name, const auto& value) { json[name] = value; });
   json["verdict"] = static_cast<int>(job.counts.verdict);
+  json["duplicates"] = job.counts.twins;
   return dumped(json) + "\n";
 }
 
@@ -132,6 +134,9 @@ Result<Job> read_job(const std::string& text) {
   const auto* const found = std::find(kStates.begin(), kStates.end(), state);
   if (reader.is_wrong() || found == kStates.end()) return wrong;
   if (verdict < 0 || verdict > static_cast<int>(Verdict::undecided)) return wrong;
+  // Older programs did not count them.
+  const auto twins = json.find("duplicates");
+  if (twins != json.end() && twins->is_number_unsigned()) job.counts.twins = *twins;
   job.state = static_cast<JobState>(found - kStates.begin());
   job.counts.verdict = static_cast<Verdict>(verdict);
   return job;

@@ -130,6 +130,7 @@ Status Run::write_end(const std::string& document, const Result<pipeline::Ingest
     json.key("verdict").value(validate::to_string(counts->verdict));
     json.key("features").value(counts->total).key("stored").value(counts->stored);
     json.key("unprovenFeatures").value(counts->unproven_features);
+    if (counts->twins > 0) json.key("duplicates").value(counts->twins);
   } else {
     const Error& error = counts.error();
     json.key("stored").value(0).key("problem").open('{');

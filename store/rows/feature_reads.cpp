@@ -252,6 +252,28 @@ Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& 
   return batch;
 }
 
+Result<std::vector<Twins>> read_twins(DatabaseSession& connection, const std::string& collection,
+                                      std::span<const std::string> ids) {
+  const auto key = key_of_collection(connection, collection);
+  if (!key) return key.error();
+  const std::vector<std::string_view> wanted(ids.begin(), ids.end());
+  const Result<Rows> rows = connection.ask(
+      "SELECT DISTINCT ON (f.id COLLATE \"C\") f.id, g.id FROM unnest($2::text[]) AS u (id)"
+      " JOIN watertight.feature_row f ON f.collection = $1::int4"
+      " AND hashtextextended(f.id, 0) = hashtextextended(u.id, 0) AND f.id = u.id"
+      " JOIN watertight.feature_row g ON g.collection = f.collection AND g.place = f.place"
+      " AND g.id <> f.id AND g.min_x = f.min_x AND g.min_y = f.min_y AND g.min_z = f.min_z"
+      " AND g.max_x = f.max_x AND g.max_y = f.max_y AND g.max_z = f.max_z"
+      " ORDER BY f.id COLLATE \"C\", g.id COLLATE \"C\"",
+      Parameters().text(*key).text_array(wanted));
+  if (!rows) return rows.error();
+  std::vector<Twins> found;
+  for (int row = 0; row < rows->size(); ++row) {
+    found.push_back({std::string(rows->text(row, 0)), std::string(rows->text(row, 1))});
+  }
+  return found;
+}
+
 Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& collection,
                                std::uint64_t limit, const std::string& after) {
   const Result<WalkPlace> start = walk_place(after);

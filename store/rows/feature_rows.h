@@ -116,6 +116,8 @@ Result<FeaturePage> read_page(DatabaseSession& connection, const FeatureQuery& q
 Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& collection,
                                 std::uint64_t limit, const std::string& after,
                                 const std::optional<Filter>& filter, SharedRows& shared);
+Result<std::vector<Twins>> read_twins(DatabaseSession& connection, const std::string& collection,
+                                      std::span<const std::string> ids);
 Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& collection,
                                std::uint64_t limit, const std::string& after);
 Result<std::vector<std::string>> read_ranked(DatabaseSession& connection, const RankQuery& query,

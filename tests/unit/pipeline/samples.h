@@ -243,6 +243,24 @@ class MemoryStore : public SolidStore {
     }
     return batch;
   }
+  Result<std::vector<store::Twins>> twins(const std::string& collection,
+                                          std::span<const std::string> ids) override {
+    const std::lock_guard lock(mutex_);
+    if (is_away) return away();
+    std::vector<store::Twins> found;
+    for (const std::string& id : std::set<std::string>(ids.begin(), ids.end())) {
+      const auto& features = features_[collection];
+      const auto own = features.find(id);
+      if (own == features.end() || !own->second.box) continue;
+      const auto other = std::find_if(features.begin(), features.end(), [&](const auto& entry) {
+        const auto& box = entry.second.box;
+        return entry.first != id && box && box->min == own->second.box->min &&
+               box->max == own->second.box->max;
+      });
+      if (other != features.end()) found.push_back({id, other->first});
+    }
+    return found;
+  }
   static std::int64_t number_of(const std::string& id) {
     return static_cast<std::int64_t>(std::hash<std::string>()(id) >> 1);
   }

@@ -85,7 +85,7 @@ Result<pipeline::IngestOutcome> ingest_text(const std::string& text, SolidStore&
   if (Status added = ingestion.add(reader); !added) return std::move(added).error();
   const auto counts = ingestion.finish();
   if (!counts) return counts.error();
-  return std::move(keeper).outcome(*counts, ingestion.versions());
+  return std::move(keeper).outcome(*counts, ingestion);
 }
 
 Bytes export_of(SolidStore& store, const std::string& collection) {

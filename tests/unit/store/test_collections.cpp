@@ -3,6 +3,7 @@
 // Pages of collections, and collections that are removed or renamed.
 #include <atomic>
 #include <catch2/catch_test_macros.hpp>
+#include <cmath>
 #include <thread>
 
 #include "fixture.h"
@@ -101,6 +102,36 @@ TEST_CASE("a collection is made before its first feature, with its CRS, policy a
   REQUIRE(store->remove_collection("city", {}));
   REQUIRE(store->make_collection("city", 0));
   CHECK(store->collection("city")->rules.empty());
+}
+
+TEST_CASE("features with the box of another one are found, in their own collection only") {
+  const Database database;
+  const auto store = database.store();
+  const auto at = [](const std::string& collection, const std::string& id, double x) {
+    StoredFeature feature = feature_of(collection, id);
+    feature.box = store::StoredBox{{x, 0, 0}, {x + 1, 1, 1}};
+    return feature;
+  };
+  for (const auto& feature :
+       {at("town", "a", 0), at("town", "b", 0), at("town", "c", 5), at("other", "d", 5),
+        at("town", "e", 0), at("town", "near", std::nextafter(5.0, 6.0))}) {
+    put_one(*store, feature);
+  }
+  StoredFeature without = feature_of("town", "x");
+  without.box.reset();
+  put_one(*store, without);
+  without.id = "y";
+  put_one(*store, without);
+  const std::vector<std::string> all{"a", "b", "c", "d", "e", "near", "x", "y", "none"};
+  const auto found = store->twins("town", all);
+  REQUIRE(found);
+  std::string text;
+  for (const store::Twins& twins : *found) text += twins.id + "=" + twins.other + " ";
+  CHECK(text == "a=b b=a e=a ");
+  const std::vector<std::string> one{"c"};
+  CHECK(store->twins("town", one)->empty());
+  CHECK(store->twins("town", {})->empty());
+  CHECK(store->twins("none", one).error().code == ErrorCode::not_found);
 }
 
 TEST_CASE("a removed collection is gone with its features, its CRS and its header") {

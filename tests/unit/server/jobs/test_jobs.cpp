@@ -150,7 +150,8 @@ TEST_CASE_METHOD(Fixture, "an uploaded file is stored, with a line for each feat
                          {"verdict", "valid"},
                          {"features", 2},
                          {"stored", 2},
-                         {"unprovenFeatures", 0}});
+                         {"unprovenFeatures", 0},
+                         {"duplicates", 2}});
   CHECK_FALSE(fs::exists(server::JobFolder(folder.string(), job).document()));
   CHECK(metrics.text(true).find(R"(watertight_jobs_total{status="successful"} 1)") !=
         std::string::npos);

@@ -124,5 +124,17 @@ TEST_CASE_METHOD(Fixture, "statistics sum up volumes, findings and bytes") {
   CHECK(get("/collections/none/statistics").status == 404);
 }
 
+TEST_CASE_METHOD(Fixture, "an answer names features that may be there twice") {
+  const auto first = post("/collections/town/items", samples::sequence({samples::feature("a")}));
+  CHECK_FALSE(Json::parse(first.body).contains("duplicates"));
+  // The same again is no duplicate; under another id it is.
+  const auto again = post("/collections/town/items", samples::sequence({samples::feature("a")}));
+  CHECK_FALSE(Json::parse(again.body).contains("duplicates"));
+  const auto second = post("/collections/town/items", samples::sequence({samples::feature("b")}));
+  REQUIRE(second.status == 201);
+  CHECK(Json::parse(second.body)["duplicates"] ==
+        Json{{"count", 1}, {"first", {{{"id", "b"}, {"sameBoxAs", "a"}}}}});
+}
+
 }  // namespace
 }  // namespace watertight

@@ -30,10 +30,9 @@ class CollectionRun {
   Result<CollectionFile> run() {
     const auto collection = store_.collection(collection_);
     if (!collection) return collection.error();
-    srid_ = collection->srid;
     std::optional<Package> package;
     auto file = TemporaryFile::make([&](const std::string& path) -> Status {
-      auto created = Package::create(path, srid_);
+      auto created = Package::create(path, collection->srid);
       if (!created) return std::move(created).error();
       package.emplace(*std::move(created));
       return Done{};
@@ -54,6 +53,7 @@ class CollectionRun {
   }
 
   Status write(Package& package, TemporaryFile& file) {
+    srid_ = package.srid();
     auto features = package.begin_layer();
     if (!features) return std::move(features).error();
     features_.emplace(*std::move(features));

@@ -19,6 +19,8 @@ class Package {
   /// longitude first; 0: in no known one. Equal layers give equal bytes. Errors: unavailable.
   static Result<Package> create(const std::string& path, std::uint32_t srid);
 
+  /// The EPSG system of the layers; 0 for one that PROJ does not know.
+  std::uint32_t srid() const { return srid_; }
   Result<Layer> begin_layer() { return Layer::begin(database_, ++layers_); }
   /// Errors: those of Layer::finish().
   Status finish(Layer& layer, const std::string& name, const std::string& description,

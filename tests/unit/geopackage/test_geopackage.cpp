@@ -187,6 +187,19 @@ TEST_CASE("the defects of what is not proven are a layer of the GeoPackage") {
   CHECK(unproven->features == 1);
 }
 
+TEST_CASE("a GeoPackage of a CRS that nobody knows keeps its coordinates") {
+  samples::MemoryStore store;
+  std::string text = samples::sequence({samples::feature("a")});
+  text.replace(text.find("/7415"), 5, "/999999");
+  store_sequence(store, text);
+  const auto made = collection_file(store, "town", {});
+  REQUIRE(made);
+  Opened file(bytes_of(made->file));
+  CHECK(file.ask("SELECT srs_id, min_x FROM gpkg_contents", 2) == Rows{"-1|100.0"});
+  // The number of the system stands in the header of each geometry, too.
+  CHECK(file.ask("SELECT hex(substr(geom, 5, 4)) FROM town", 1) == Rows{"FFFFFFFF"});
+}
+
 TEST_CASE("a GeoPackage that cannot be finished gives the reason") {
   samples::MemoryStore store;
   store_sequence(store, kOneOpen);

@@ -63,7 +63,8 @@ TEST_CASE_METHOD(Town, "schemas are JSON Schemas whose properties have types and
       for (const auto& [keyword, value] : property.items()) CHECK(known.contains(keyword));
     }
   }
-  for (const auto& [key, property] : schema("sortables")["properties"].items()) {
+  const Json sortables = schema("sortables");
+  for (const auto& [key, property] : sortables["properties"].items()) {
     CHECK(property["type"] != "array");
     CHECK(property["type"] != "object");
   }

@@ -35,14 +35,6 @@ pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Co
   return options;
 }
 
-/// Sets the rules that the collection keeps for its writes, if it exists. Errors: those of the
-/// store.
-Status apply_rules_of(SolidStore& store, pipeline::IngestOptions& options) {
-  const auto found = store.collection(options.collection);
-  if (found) return pipeline::apply_rules(found->rules, options);
-  return found.error().code == ErrorCode::not_found ? Status(Done{}) : found.error();
-}
-
 /// Says which stored features have the box of another one.
 void tell_twins(const std::string& file, const pipeline::IngestCounts& counts,
                 const std::vector<store::Twins>& twins) {
@@ -134,7 +126,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   std::optional<std::uint64_t> whole = input->bytes;
   std::optional<std::size_t> count;
   pipeline::IngestOptions options = options_;
-  if (Status own = apply_rules_of(store, options); !own) return std::move(own).error();
+  if (Status own = pipeline::apply_rules_of(store, options); !own) return std::move(own).error();
   apply(command_.rules, options.certify, options.groups);  // what the command line states counts
   options.stages = &stages_;
   options.unnamed = std::filesystem::path(input->name.empty() ? name : input->name).stem().string();

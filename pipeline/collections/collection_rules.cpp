@@ -88,4 +88,10 @@ Status apply_rules(std::string_view text, IngestOptions& options) {
   return Done{};
 }
 
+Status apply_rules_of(SolidStore& store, IngestOptions& options) {
+  const auto found = store.collection(options.collection);
+  if (found) return apply_rules(found->rules, options);
+  return found.error().code == ErrorCode::not_found ? Status(Done{}) : found.error();
+}
+
 }  // namespace watertight::pipeline

@@ -34,4 +34,7 @@ Rules rules_in(std::string_view text);
 /// Sets the rules in a text of rules_text(). Errors: as for apply_rule().
 Status apply_rules(std::string_view text, IngestOptions& options);
 
+/// Sets the rules that the collection of a write keeps, if it exists. Errors: those of the store.
+Status apply_rules_of(SolidStore& store, IngestOptions& options);
+
 }  // namespace watertight::pipeline

@@ -6,6 +6,7 @@
 
 #include "formats/attributes/patch_attributes.h"
 #include "formats/city_json/city_json.h"
+#include "pipeline/collections/collection_rules.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/streaming/ingestion.h"
 #include "server/documents/rules.h"
@@ -158,7 +159,7 @@ Response patch_item(const RoutedRequest& request) {
   }
   pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
   options.collection = request.target.segments[1];
-  const Status own = apply_rules_of(store, options.collection, options);
+  const Status own = pipeline::apply_rules_of(store, options);
   if (!own) return to_response(to_problem(own.error()));
   options.policy = store::Policy::keep;  // the geometry is what it was
   // Another change since the feature was read is not overwritten.

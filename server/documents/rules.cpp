@@ -33,13 +33,6 @@ Status read_rules(const Target& target, pipeline::IngestOptions& options) {
   return Done{};
 }
 
-Status apply_rules_of(SolidStore& store, const std::string& collection,
-                      pipeline::IngestOptions& options) {
-  const auto found = store.collection(collection);
-  if (found) return pipeline::apply_rules(found->rules, options);
-  return found.error().code == ErrorCode::not_found ? Status(Done{}) : found.error();
-}
-
 Status read_submit_rules(const Target& target, pipeline::IngestOptions& options) {
   if (const std::string* named = target.parameter("invalid")) {
     const auto invalid = pipeline::policy_named(*named);
@@ -56,7 +49,7 @@ Status read_submit_rules(const Target& target, pipeline::IngestOptions& options)
 Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request) {
   pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
   options.collection = request.target.segments[1];
-  const Status own = apply_rules_of(*request.service.store, options.collection, options);
+  const Status own = pipeline::apply_rules_of(*request.service.store, options);
   if (!own) return own.error();
   if (Status rules = read_submit_rules(request.target, options); !rules) {
     return std::move(rules).error();

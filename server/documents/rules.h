@@ -25,10 +25,6 @@ Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request);
 /// proof, strict. Errors: invalid_argument.
 Status read_rules(const Target& target, pipeline::IngestOptions& options);
 
-/// Sets the rules that a collection keeps for its writes, if it exists. Errors: those of the store.
-Status apply_rules_of(SolidStore& store, const std::string& collection,
-                      pipeline::IngestOptions& options);
-
 /// The rule for surfaces that are kept: as they came, or closed ones as solids. Errors:
 /// invalid_argument.
 Result<formats::Surfaces> stored_surfaces(const Target& target);

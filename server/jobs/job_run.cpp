@@ -12,6 +12,7 @@
 #include "files/inputs.h"
 #include "files/zip_documents.h"
 #include "pipeline/collections/collection_header.h"
+#include "pipeline/collections/collection_rules.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/streaming/ingestion.h"
 #include "server/documents/rules.h"
@@ -274,7 +275,7 @@ Result<pipeline::IngestOptions> job_options(const Service& service, const std::s
   }
   options.collection = *collection;
   if (reads_collection) {
-    const Status own = apply_rules_of(*service.store, *collection, options);
+    const Status own = pipeline::apply_rules_of(*service.store, options);
     if (!own) return own.error();
   }
   if (Status rules = read_submit_rules(*parsed, options); !rules) return std::move(rules).error();

@@ -38,8 +38,12 @@ check "a program is built with the library by CMake" \
   sh -c 'cmake -S /examples/library -B /tmp/library >/dev/null && cmake --build /tmp/library >/dev/null'
 g++ -std=c++20 /examples/library/main.cpp $(pkg-config --cflags --libs watertight) -o /tmp/program
 check "and by pkg-config" [ -x /tmp/program ]
-/tmp/program /examples/delft.city.jsonl >/tmp/one || true
-/tmp/library/solids_of_a_city /examples/delft.city.jsonl >/tmp/two || true
+status=0
+/tmp/program /examples/delft.city.jsonl >/tmp/one || status=$?
+check "its exit status says that not all is valid" [ "$status" -eq 1 ]
+status=0
+/tmp/library/solids_of_a_city /examples/delft.city.jsonl >/tmp/two || status=$?
+check "so does that of the other" [ "$status" -eq 1 ]
 check "it judges and packs a city" grep -q '^470 of 480 solids are valid' /tmp/one
 check "both do the same" cmp -s /tmp/one /tmp/two
 completed=$(bash -c '. /usr/share/bash-completion/completions/watertight; COMP_WORDS=(watertight inge) COMP_CWORD=1

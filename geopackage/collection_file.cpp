@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geopackage/collection_file.h"
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "geopackage/package.h"
 #include "pipeline/shown/shown_feature.h"
+#include "report/stored_findings.h"
 
 namespace watertight::geopackage {
 namespace {
@@ -117,45 +117,21 @@ class CollectionRun {
   Status add_findings(const StoredFeature& feature) {
     const auto unpacked = pipeline::unpack(feature, {}, pipeline::Reports::of_unproven);
     if (!unpacked) return unpacked.error();
-    for (const StoredSolid& solid : unpacked->solids) {
-      if (solid.is_proven) continue;
-      const Json report = Json::parse(solid.report, nullptr, false);
-      if (!report.is_object()) continue;
-      for (const char* list : {"errors", "warnings"}) {
-        for (const Json& finding : report.value(list, Json::array())) {
-          const Status added = add_finding(feature, solid.object_id, solid.lod, finding);
-          if (!added) return added;
-        }
-      }
-    }
-    const Json groups = Json::parse(unpacked->findings, nullptr, false);
-    if (!groups.is_array()) return Done{};
-    for (const Json& group : groups) {
-      const std::string object = group.value("object", "");
-      const std::string lod = group.value("lod", "");
-      for (const Json& finding : group.value("findings", Json::array())) {
-        if (Status added = add_finding(feature, object, lod, finding); !added) return added;
-      }
+    for (report::StoredFinding& finding : report::findings_of(*unpacked)) {
+      const Status added = add_finding(feature.id, std::move(finding));
+      if (!added) return added;
     }
     return Done{};
   }
 
-  Status add_finding(const StoredFeature& feature, const std::string& object,
-                     const std::string& lod, const Json& finding) {
+  Status add_finding(const std::string& feature, report::StoredFinding finding) {
     std::optional<ShapeBytes> shape;
-    if (const auto witness = finding.find("witness");
-        witness != finding.end() && witness->is_array() && witness->size() == 3) {
-      shape = point_bytes(witness->get<std::array<double, 3>>(), srid_);
-    }
-    Properties properties{{"feature", Json(feature.id).dump()},
-                          {"object", Json(object).dump()},
-                          {"lod", Json(lod).dump()}};
-    for (const char* member : {"code", "name", "severity", "measured", "limit", "unit", "hint"}) {
-      properties.emplace_back(member, finding.value(member, Json()).dump());
-    }
-    const char* detail = finding.contains("info") ? "info" : "detail";
-    properties.emplace_back("detail", finding.value(detail, Json()).dump());
-    properties.emplace_back("pointer", finding.value("pointer", Json()).dump());
+    if (finding.witness) shape = point_bytes(*finding.witness, srid_);
+    Properties properties{
+        {"feature", Json(feature).dump()},   {"object", Json(finding.object).dump()},
+        {"lod", Json(finding.lod).dump()},   {"code", std::to_string(finding.code)},
+        {"name", Json(finding.name).dump()}, {"severity", Json(finding.severity).dump()}};
+    for (auto& member : finding.members) properties.push_back(std::move(member));
     return findings_->add(shape, properties);
   }
 

@@ -7,6 +7,7 @@
 
 #include "pipeline/pipeline.h"
 #include "pipeline/stored/stored_reports.h"
+#include "report/stored_findings.h"
 #include "server/items/kept_answer.h"
 #include "server/json_answers.h"
 
@@ -49,11 +50,13 @@ class Statistics {
       ++level.solids;
       solid_bytes_ += solid.blob.size();
       if (solid.is_proven && next != decoded->end()) add_proven((next++)->solid, level);
-      if (!solid.is_proven) add_report(Json::parse(solid.report, nullptr, false));
     }
-    const Json groups = Json::parse(feature->findings, nullptr, false);
-    if (!groups.is_array()) return Done{};
-    for (const Json& group : groups) add_findings(group.value("findings", Json::array()));
+    for (report::StoredFinding& finding : report::findings_of(*feature)) {
+      FindingCount& found = findings_[finding.code];
+      found.name = std::move(finding.name);
+      found.severity = std::move(finding.severity);
+      ++found.count;
+    }
     return Done{};
   }
 
@@ -91,22 +94,6 @@ class Statistics {
     if (!measures) return;
     level.volume += measures->volume;
     level.area += measures->area;
-  }
-
-  void add_report(const Json& report) {
-    if (!report.is_object()) return;
-    for (const char* list : {"errors", "warnings"}) {
-      add_findings(report.value(list, Json::array()));
-    }
-  }
-
-  void add_findings(const Json& findings) {
-    for (const Json& finding : findings) {
-      FindingCount& found = findings_[finding.value("code", 0)];
-      found.name = finding.value("name", "");
-      found.severity = finding.value("severity", "");
-      ++found.count;
-    }
   }
 
   std::map<std::string, LevelCount> levels_;  // by level of detail

@@ -177,13 +177,18 @@ const std::vector<Route>& collection_routes() {
        get_report,
        {std::begin(kReportParameters), std::end(kReportParameters)}},
       {"GET", "/collections/{collectionId}/statistics", computing, read, get_statistics, {"f"}},
-      {"GET", "/collections/{collectionId}/3dtiles", computing, read, get_tileset, {"compression"}},
+      {"GET",
+       "/collections/{collectionId}/3dtiles",
+       computing,
+       read,
+       get_tileset,
+       {"compression", "layer"}},
       {"GET",
        "/collections/{collectionId}/3dtiles/content",
        computing,
        read,
        get_tile,
-       {"frame", "origin", "bounds", "from", "below", "compression"}},
+       {"frame", "origin", "bounds", "from", "below", "compression", "layer"}},
   };
   return table;
 }

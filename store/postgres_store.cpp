@@ -306,10 +306,11 @@ class PostgresStore final : public SolidStore {
   }
 
   Result<PlacedPage> places(const std::string& collection, std::uint64_t limit,
-                            const std::string& after) override {
+                            const std::string& after, bool only_unproven) override {
     if (!check_collection_id(collection)) return no_such_collection();
-    return read<PlacedPage>(
-        [&](DatabaseSession& session) { return read_places(session, collection, limit, after); });
+    return read<PlacedPage>([&](DatabaseSession& session) {
+      return read_places(session, collection, limit, after, only_unproven);
+    });
   }
 
   Result<std::vector<std::string>> ranked(const RankQuery& query, std::uint64_t limit) override {

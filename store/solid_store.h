@@ -202,6 +202,7 @@ struct RankQuery {
   std::array<double, 2> max{};
   SizeRank from;                  // the lowest rank
   std::optional<SizeRank> below;  // ranks are below it
+  bool only_unproven = false;     // of the features that are not proven (is_proven())
 };
 
 /// Two features of a collection in the same place: their boxes are equal, which tells of one thing
@@ -320,10 +321,10 @@ class SolidStore {
                             const std::string& after) {
     return walk(collection, limit, after, std::nullopt);
   }
-  /// The places of the next features that have a box, in the order of walk(); at most `limit`
-  /// (10,000). Errors: as for walk().
+  /// The places of the next features that have a box, in the order of walk(), or only those that
+  /// are not proven; at most `limit` (10,000). Errors: as for walk().
   virtual Result<PlacedPage> places(const std::string& collection, std::uint64_t limit,
-                                    const std::string& after) = 0;
+                                    const std::string& after, bool only_unproven) = 0;
   /// The ids of features by their ranks, the highest first; at most `limit` (10,000). Errors:
   /// not_found when there is no such collection. Cost: that of reading the boxes in the part of the
   /// plane.

@@ -27,9 +27,10 @@ enum class Look : std::uint8_t {
   vegetation,
   water,
   transport,
-  other
+  other,
+  finding
 };
-inline constexpr std::size_t kLooks = 9;
+inline constexpr std::size_t kLooks = 10;
 
 struct FeatureMesh {
   std::string id;

@@ -43,7 +43,8 @@ constexpr std::array<LookMaterial, kLooks> kMaterials{{{"roof", {0.42, 0.10, 0.0
                                                        {"vegetation", {0.08, 0.28, 0.06}},
                                                        {"water", {0.06, 0.22, 0.46}},
                                                        {"transport", {0.18, 0.18, 0.20}},
-                                                       {"other", {0.45, 0.45, 0.52}}}};
+                                                       {"other", {0.45, 0.45, 0.52}},
+                                                       {"finding", {0.78, 0.02, 0.05}}}};
 
 using VertexPosition = std::array<float, 3>;
 

@@ -13,8 +13,10 @@
 
 #include "server/handlers.h"
 #include "server/items/kept_answer.h"
+#include "server/scene/finding_pins.h"
 #include "server/scene/stored_mesh.h"
 #include "tiles/glb.h"
+#include "tiles/pin.h"
 #include "tiles/tileset.h"
 
 namespace watertight::server {
@@ -90,7 +92,13 @@ bool is_near(const store::StoredBox& box) {
   return true;
 }
 
-/// The features of a collection that have a place, as items of a tree.
+/// Whether a layer of the findings is wanted instead of the features.
+bool is_of_findings(const Target& target) {
+  const std::string* layer = target.parameter("layer");
+  return layer != nullptr && *layer == "findings";
+}
+
+/// The features of a collection that have a place and are in the wanted layer, as items of a tree.
 Result<std::vector<tiles::TileItem>> items_of(const RoutedRequest& request,
                                               const std::string& collection) {
   std::vector<tiles::TileItem> items;
@@ -99,7 +107,8 @@ Result<std::vector<tiles::TileItem>> items_of(const RoutedRequest& request,
     if (request.is_cancelled && request.is_cancelled()) {
       return Error{ErrorCode::cancelled, "the tileset was not finished in time"};
     }
-    auto page = request.service.store->places(collection, kPlacesAtOnce, after);
+    auto page = request.service.store->places(collection, kPlacesAtOnce, after,
+                                              is_of_findings(request.target));
     if (!page) return std::move(page).error();
     for (const store::PlacedFeature& feature : page->features) {
       if (!is_near(feature.box)) continue;
@@ -153,6 +162,16 @@ Result<tiles::TileBox> box_in_frame(std::uint32_t srid, const tiles::Frame& fram
   return around;
 }
 
+/// The box with room for pins.
+tiles::TileBox box_with_pins(tiles::TileBox box) {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    box.min[axis] -= tiles::kPinRadius;
+    box.max[axis] += tiles::kPinRadius;
+  }
+  box.max[2] += tiles::kPinHeight;
+  return box;
+}
+
 /// Writes the addresses of tiles, in the order of the tree.
 class AddressWriter {
  public:
@@ -196,13 +215,26 @@ bool is_plain(const Target& target) {
   return compression != nullptr && *compression == "none";
 }
 
-/// The refusal of a compression that there is not.
-std::optional<Response> refused_compression(const Target& target) {
+/// The refusal of a compression or a layer that there is not.
+std::optional<Response> refused_choice(const Target& target) {
   const std::string* compression = target.parameter("compression");
-  if (compression == nullptr || *compression == "none" || *compression == "meshopt") {
-    return std::nullopt;
+  if (compression != nullptr && *compression != "none" && *compression != "meshopt") {
+    return refuse(400, "invalid-argument", "compression is meshopt or none");
   }
-  return refuse(400, "invalid-argument", "compression is meshopt or none");
+  const std::string* layer = target.parameter("layer");
+  if (layer != nullptr && *layer != "features" && *layer != "findings") {
+    return refuse(400, "invalid-argument", "layer is features or findings");
+  }
+  return std::nullopt;
+}
+
+/// The middle of a collection in the plane, which is the origin of the frame of all its layers.
+/// `items`: the box around those of the layer.
+std::array<double, 2> middle_of(const store::StoredCollection& collection,
+                                const tiles::TileBox& items) {
+  tiles::TileBox all = items;
+  if (collection.box && is_near(*collection.box)) all = {collection.box->min, collection.box->max};
+  return {(all.min[0] + all.max[0]) / 2, (all.min[1] + all.max[1]) / 2};
 }
 
 /// The text of the tileset of a collection.
@@ -214,10 +246,12 @@ Result<std::string> tileset_of(const RoutedRequest& request,
       tiles::tile_tree(*items, {.items = kMostFeatures, .weight = kMostBytes});
   if (tree.empty()) return tiles::tileset_json({}, tiles::Frame(), tiles::content_name);
   const tiles::TileBox all = tree.front().box;
-  const std::array<double, 2> middle{(all.min[0] + all.max[0]) / 2, (all.min[1] + all.max[1]) / 2};
+  const std::array<double, 2> middle = middle_of(collection, all);
+  const bool has_pins = is_of_findings(request.target);
   const tiles::Frame frame = frame_at(collection.srid, middle);
   std::string rest = "frame=" + text_of(middle);
   if (is_plain(request.target)) rest += "&compression=none";
+  if (has_pins) rest += "&layer=findings";
   std::vector<std::string> addresses = AddressWriter(tree, *items, std::move(rest)).take();
   const auto around = box_in_frame(collection.srid, frame, all);
   if (!around) return around.error();
@@ -227,7 +261,7 @@ Result<std::string> tileset_of(const RoutedRequest& request,
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const auto box = box_in_frame(collection.srid, frame, tree[i].box);
     if (!box) return box.error();
-    tree[i].box = *box;
+    tree[i].box = has_pins ? box_with_pins(*box) : *box;
     tree[i].largest_below *= scale;
     addresses[i].append("&origin=");
     std::array<double, 3> origin{};
@@ -258,11 +292,27 @@ std::optional<TileRequest> tile_request(const Target& target) {
   wanted.frame = *frame;
   wanted.query = {
       target.segments[1], {(*bounds)[0], (*bounds)[1]}, {(*bounds)[2], (*bounds)[3]}, *from, below};
+  wanted.query.only_unproven = is_of_findings(target);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!(std::abs((*origin)[axis]) < INT32_MAX)) return std::nullopt;
     wanted.origin[axis] = static_cast<std::int32_t>((*origin)[axis]);
   }
   return wanted;
+}
+
+/// A stored feature in the layer that is wanted.
+Result<std::vector<tiles::FeatureMesh>> meshes_of(StoredFeature stored, const TileRequest& wanted,
+                                                  std::uint32_t srid, const tiles::Frame& frame,
+                                                  pipeline::ShownFeatureReader& reader,
+                                                  const Limits& limits) {
+  if (wanted.query.only_unproven) return pins_of(std::move(stored), srid, frame, limits);
+  auto shown = reader.read(std::move(stored));
+  if (!shown) return std::move(shown).error();
+  std::vector<tiles::FeatureMesh> meshes;
+  auto mesh = mesh_of_shown(*std::move(shown), frame);
+  // One that is too large to be shown, or has no place, is left out.
+  if (mesh && !mesh->is_empty()) meshes.push_back(*std::move(mesh));
+  return meshes;
 }
 
 /// The features of a tile as a .glb. Errors: not_found without any; limit_exceeded.
@@ -274,7 +324,8 @@ Result<Bytes> content_of(const RoutedRequest& request, const TileRequest& wanted
   const Error too_much{ErrorCode::limit_exceeded, "the tile has more than a tile may have"};
   if (ids->size() > kMostFeatures) return too_much;
   const tiles::Frame frame = frame_at(srid, wanted.frame);
-  pipeline::ShownFeatureReader reader(std::nullopt, request.service.options.limits);
+  const Limits& limits = request.service.options.limits;
+  pipeline::ShownFeatureReader reader(std::nullopt, limits);
   std::vector<tiles::FeatureMesh> meshes;
   std::size_t triangles = 0;
   for (const std::string& id : *ids) {
@@ -284,13 +335,13 @@ Result<Bytes> content_of(const RoutedRequest& request, const TileRequest& wanted
     auto stored = store.get(wanted.query.collection, id);
     if (!stored && stored.error().code == ErrorCode::not_found) continue;
     if (!stored) return std::move(stored).error();
-    auto shown = reader.read(*std::move(stored));
-    if (!shown) return std::move(shown).error();
-    auto mesh = mesh_of_shown(*std::move(shown), frame);
-    if (!mesh || mesh->is_empty()) continue;  // it is too large to be shown, or has no place
-    triangles += mesh->triangle_count();
-    if (triangles > kMostTriangles) return too_much;
-    meshes.push_back(*std::move(mesh));
+    auto added = meshes_of(*std::move(stored), wanted, srid, frame, reader, limits);
+    if (!added) return std::move(added).error();
+    for (tiles::FeatureMesh& mesh : *added) {
+      triangles += mesh.triangle_count();
+      if (triangles > kMostTriangles) return too_much;
+      meshes.push_back(std::move(mesh));
+    }
   }
   if (meshes.empty()) return Error{ErrorCode::not_found, "there is no feature in this tile"};
   std::vector<const tiles::FeatureMesh*> features;
@@ -303,7 +354,7 @@ Result<Bytes> content_of(const RoutedRequest& request, const TileRequest& wanted
 }  // namespace
 
 Response get_tileset(const RoutedRequest& request) {
-  if (auto refusal = refused_compression(request.target)) return *std::move(refusal);
+  if (auto refusal = refused_choice(request.target)) return *std::move(refusal);
   const auto collection = request.service.store->collection(request.target.segments[1]);
   if (!collection) return to_response(to_problem(collection.error()));
   return kept_or_made(request, *collection, "3dtiles", kJson,
@@ -311,7 +362,7 @@ Response get_tileset(const RoutedRequest& request) {
 }
 
 Response get_tile(const RoutedRequest& request) {
-  if (auto refusal = refused_compression(request.target)) return *std::move(refusal);
+  if (auto refusal = refused_choice(request.target)) return *std::move(refusal);
   const auto wanted = tile_request(request.target);
   if (!wanted) {
     return refuse(400, "invalid-argument",

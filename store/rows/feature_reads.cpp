@@ -99,7 +99,7 @@ Result<WalkPlace> walk_place(const std::string& text) {
 /// batch.
 Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
                        const std::string& collection, const WalkPlace& after, std::int64_t limit,
-                       const std::optional<Filter>& filter) {
+                       const std::optional<Filter>& filter, bool only_unproven = false) {
   Parameters parameters;
   parameters.text(collection).int8(after.place).text(after.id).int8(limit);
   std::string statement = columns;
@@ -109,6 +109,7 @@ Result<Rows> walk_rows(DatabaseSession& connection, const std::string& columns,
       " AND f.place >= $2 AND (f.place, f.id) > ($2, $3)");
   int next = 5;
   if (filter) statement.append(" AND ").append(filter_clause(*filter, next, parameters));
+  if (only_unproven) statement.append(" AND NOT f.is_proven");
   statement.append(" ORDER BY f.place, f.id LIMIT $4");
   return filter ? connection.run(statement, parameters) : connection.ask(statement, parameters);
 }
@@ -275,7 +276,7 @@ Result<std::vector<Twins>> read_twins(DatabaseSession& connection, const std::st
 }
 
 Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& collection,
-                               std::uint64_t limit, const std::string& after) {
+                               std::uint64_t limit, const std::string& after, bool only_unproven) {
   const Result<WalkPlace> start = walk_place(after);
   if (!start) return start.error();
   const auto at_most = static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage));
@@ -285,7 +286,7 @@ Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& c
       connection,
       "SELECT f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z, hashtextextended(f.id, 0),"
       " (octet_length(packed_solids) + octet_length(packed_text))::int8, f.id",
-      collection, *start, at_most, std::nullopt);
+      collection, *start, at_most, std::nullopt, only_unproven);
   if (!rows) return rows.error();
   PlacedPage page;
   for (int row = 0; row < rows->size(); ++row) {
@@ -314,7 +315,8 @@ Result<std::vector<std::string>> read_ranked(DatabaseSession& connection, const 
   parameters.int8(static_cast<std::int64_t>(std::clamp<std::uint64_t>(limit, 1, kLargestPage)));
   // The formula of plane_size(), with the same doubles. PostgreSQL refuses sums that overflow, so
   // coordinates are brought to kFarthest first.
-  const Result<Rows> rows = connection.run(
+  const std::string_view proof = query.only_unproven ? " AND NOT f.is_proven" : "";
+  std::string statement =
       "SELECT id FROM (SELECT id, greatest(high_x - low_x, high_y - low_y) AS size,"
       " hashtextextended(id, 0) AS number, (low_x + high_x) / 2 AS x, (low_y + high_y) / 2 AS y"
       " FROM (SELECT f.id, greatest(least(min_x, 1e18), -1e18) AS low_x,"
@@ -323,11 +325,13 @@ Result<std::vector<std::string>> read_ranked(DatabaseSession& connection, const 
       " greatest(least(max_y, 1e18), -1e18) AS high_y FROM watertight.feature_row f"
       " WHERE f.collection = (SELECT key FROM watertight.collection WHERE name = $1)"
       " AND min_x IS NOT NULL AND watertight.index_box(min_x, min_y, max_x, max_y)"
-      " && watertight.index_box($2, $3, $4, $5)) AS boxes) AS ranks"
+      " && watertight.index_box($2, $3, $4, $5)";
+  statement.append(proof).append(
+      ") AS boxes) AS ranks"
       " WHERE x >= $2 AND x < $4 AND y >= $3 AND y < $5"
       " AND (size, number) >= ($6, $7) AND (size, number) < ($8, $9)"
-      " ORDER BY size DESC, number DESC LIMIT $10",
-      parameters);
+      " ORDER BY size DESC, number DESC LIMIT $10");
+  const Result<Rows> rows = connection.run(statement, parameters);
   if (!rows) return rows.error();
   if (rows->size() == 0) {
     const auto key = key_of_collection(connection, query.collection);

@@ -119,7 +119,7 @@ Result<FeatureBatch> read_batch(DatabaseSession& connection, const std::string& 
 Result<std::vector<Twins>> read_twins(DatabaseSession& connection, const std::string& collection,
                                       std::span<const std::string> ids);
 Result<PlacedPage> read_places(DatabaseSession& connection, const std::string& collection,
-                               std::uint64_t limit, const std::string& after);
+                               std::uint64_t limit, const std::string& after, bool only_unproven);
 Result<std::vector<std::string>> read_ranked(DatabaseSession& connection, const RankQuery& query,
                                              std::uint64_t limit);
 Result<std::vector<StoredHeader>> read_documents(DatabaseSession& connection,

@@ -14,6 +14,7 @@ const [service, examples, pictures] = process.argv.slice(2);
 const kNearMiddle = 0.12;  // of the width or height of the picture
 const kPlace = [0x9b, 0x30, 0xff];
 const kFacet = [0xbb, 0x57, 0x63];  // red over a wall
+const kPin = [0xd0, 0x24, 0x38];
 const kChosen = [0xff, 0xd2, 0x3f];
 
 const seen = [];
@@ -62,6 +63,8 @@ const pixels = (colour) => page.evaluate((wanted) => {
 }, colour);
 
 const isMiddle = ({x, y}) => Math.abs(x - 0.5) < kNearMiddle && Math.abs(y - 0.5) < kNearMiddle;
+
+const isAbove = ({x, y}) => Math.abs(x - 0.5) < kNearMiddle && y < 0.5 && y > 0.2;
 
 /// The picture as text, to see whether it changed.
 const picture = () => page.evaluate(async () => {
@@ -194,6 +197,19 @@ async function city() {
   const chosen = await pixels(kChosen);
   check(chosen.share > 0.01 && isMiddle(chosen), 'the next feature with findings is flown to');
   await shot('city-finding');
+  await page.getByLabel('Not proven in red').uncheck();
+  await quiet();
+  const without = (await pixels(kPin)).share;
+  await page.getByLabel('Pins of findings').check();
+  await quiet();
+  const pins = await pixels(kPin);
+  check(pins.share > without + 0.0003 && isAbove(pins), 'a pin stands over what was flown to');
+  await shot('city-pins');
+  await page.getByLabel('Pins of findings').uncheck();
+  await quiet();
+  check(Math.abs((await pixels(kPin)).share - without) < 1e-4, 'pins are switched off');
+  await page.getByLabel('Not proven in red').check();
+  await quiet();
   const id = await page.locator('.side h2').textContent();
   const box = await page.locator('.stage canvas').boundingBox();
   await page.mouse.click(box.x + box.width * chosen.x, box.y + box.height * chosen.y);

@@ -265,13 +265,14 @@ class MemoryStore : public SolidStore {
     return static_cast<std::int64_t>(std::hash<std::string>()(id) >> 1);
   }
   Result<store::PlacedPage> places(const std::string& collection, std::uint64_t /*limit*/,
-                                   const std::string& /*after*/) override {
+                                   const std::string& /*after*/, bool only_unproven) override {
     const std::lock_guard lock(mutex_);
     if (is_away) return away();
     if (!features_.contains(collection)) return Error{ErrorCode::not_found, "no collection"};
     store::PlacedPage page;
     for (const auto& [id, feature] : features_[collection]) {
-      if (feature.box) page.features.push_back({*feature.box, number_of(id), 1});
+      if (!feature.box || (only_unproven && feature.is_proven())) continue;
+      page.features.push_back({*feature.box, number_of(id), 1});
     }
     return page;
   }
@@ -281,7 +282,7 @@ class MemoryStore : public SolidStore {
     if (is_away) return away();
     std::map<std::pair<double, std::int64_t>, std::string> found;
     for (const auto& [id, feature] : features_[query.collection]) {
-      if (!feature.box) continue;
+      if (!feature.box || (query.only_unproven && feature.is_proven())) continue;
       const std::pair rank{store::plane_size(*feature.box), number_of(id)};
       bool is_in = rank >= std::pair{query.from.size, query.from.number} &&
                    (!query.below || rank < std::pair{query.below->size, query.below->number});

@@ -71,6 +71,35 @@ TEST_CASE_METHOD(TiledCity, "solids that are not proven are shown too") {
   CHECK(features_of_glb(tile.body) == 2);
 }
 
+TEST_CASE_METHOD(TiledCity, "the findings are a layer of their own: a pin for each") {
+  REQUIRE(post("/collections/open/items?invalid=keep", samples::kOneOpen).status == 201);
+  const Json tileset = Json::parse(get("/collections/open/3dtiles?layer=findings").body);
+  const std::string address = tileset["root"]["content"]["uri"];
+  const server::Response tile = get("/collections/open/" + address);
+  INFO(tile.body);
+  REQUIRE(tile.status == 200);
+  const Json json = json_of_glb(tile.body);
+  const Json statistics = Json::parse(get("/collections/open/statistics").body);
+  std::uint64_t findings = 0;
+  for (const Json& found : statistics["findings"]) findings += found["count"].get<std::uint64_t>();
+  CHECK(findings > 0);
+  CHECK(features_of_glb(tile.body) == findings);
+  const Json& schema = json["extensions"]["EXT_structural_metadata"]["schema"];
+  const Json& properties = schema["classes"]["feature"]["properties"];
+  CHECK(properties["code"]["type"] == "SCALAR");
+  CHECK(properties.contains("detail"));
+  // The layer without defects has nothing.
+  CHECK_FALSE(Json::parse(get("/collections/town/3dtiles?layer=findings").body)["root"].contains(
+      "content"));
+  // Both layers are in one frame.
+  const Json features = Json::parse(get("/collections/open/3dtiles").body);
+  const auto frame_of = [](std::string text) {
+    return text.substr(text.find("frame="), text.find('&') - text.find("frame="));
+  };
+  CHECK(frame_of(address) == frame_of(features["root"]["content"]["uri"]));
+  CHECK(problem_of(get("/collections/open/3dtiles?layer=roofs"))["status"] == 400);
+}
+
 TEST_CASE_METHOD(TiledCity, "a tileset is unchanged as long as its collection is") {
   const server::Response first = get("/collections/town/3dtiles");
   const std::string tag = *header_of(first, "ETag");

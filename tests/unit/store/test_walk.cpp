@@ -242,7 +242,7 @@ TEST_CASE("places are those of all features with a box, page by page") {
   std::string after;
   std::map<double, std::int64_t> numbers;
   do {
-    const auto page = store.places("buildings", 7, after);
+    const auto page = store.places("buildings", 7, after, false);
     REQUIRE(page);
     for (const auto& placed : page->features) {
       CHECK(numbers.emplace(placed.box.min[0], placed.number).second);
@@ -252,7 +252,7 @@ TEST_CASE("places are those of all features with a box, page by page") {
     after = page->next;
   } while (!after.empty());
   CHECK(numbers.size() == 25);
-  CHECK_FALSE(store.places("nowhere", 7, ""));
+  CHECK_FALSE(store.places("nowhere", 7, "", false));
 }
 
 TEST_CASE("ranked features are those of a part of the plane, the largest first") {
@@ -276,7 +276,7 @@ TEST_CASE("ranked features are those of a part of the plane, the largest first")
 
   // Cut at any rank, the two parts are all features.
   std::map<std::int64_t, double> ranks;
-  const auto all_places = store.places("buildings", 100, "");
+  const auto all_places = store.places("buildings", 100, "", false);
   REQUIRE(all_places);
   for (const auto& placed : all_places->features) {
     if (placed.box.min[0] == 0) ranks[placed.number] = store::plane_size(placed.box);
@@ -293,8 +293,35 @@ TEST_CASE("ranked features are those of a part of the plane, the largest first")
     CHECK(joined == *all);
   }
   CHECK(store.ranked(query, 3)->size() == 3);
+  query.only_unproven = true;
+  CHECK(store.ranked(query, 100)->empty());
   query.collection = "nowhere";
   CHECK_FALSE(store.ranked(query, 3));
+}
+
+TEST_CASE("features that are not proven are placed and ranked by themselves") {
+  const Database database;
+  const auto opened = database.store();
+  auto& store = *opened;
+  std::vector<StoredFeature> features;
+  for (int i = 0; i < 10; ++i) features.push_back(at("f" + std::to_string(i), i, 0, 1));
+  for (const std::size_t i : {2U, 5U, 7U}) features[i].has_findings = true;
+  REQUIRE(store.put(features));
+  std::vector<double> found;
+  std::string after;
+  do {
+    const auto page = store.places("buildings", 2, after, true);
+    REQUIRE(page);
+    for (const auto& placed : page->features) found.push_back(placed.box.min[0]);
+    after = page->next;
+  } while (!after.empty());
+  std::ranges::sort(found);
+  CHECK(found == std::vector<double>{2, 5, 7});
+  store::RankQuery query{"buildings", {0, 0}, {100, 10}, {0, INT64_MIN}, std::nullopt};
+  query.only_unproven = true;
+  auto ids = *store.ranked(query, 100);
+  std::ranges::sort(ids);
+  CHECK(ids == std::vector<std::string>{"f2", "f5", "f7"});
 }
 
 }  // namespace watertight

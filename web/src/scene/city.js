@@ -19,9 +19,11 @@ function valuesOf(mesh, feature) {
 }
 
 export class City {
-  /// `onFailure(text)` is called when a part cannot be loaded.
-  constructor(address, stage, onFailure) {
+  /// `onFailure(text)` is called when a part cannot be loaded. `base`: the tileset, loaded already,
+  /// in whose place this one is; without it the scene is that of this tileset.
+  constructor(address, stage, onFailure, base = null) {
     this.stage = stage;
+    this.base = base;
     this.chosen = null;
     this.showsProof = true;
     this.meshes = new Set();
@@ -68,6 +70,7 @@ export class City {
 
   /// The feature under a point of the page: its values; null without one.
   pick(clientX, clientY) {
+    if (!this.tiles.group.visible) return null;
     const hit = this.stage.hit(clientX, clientY, [...this.meshes]);
     const ids = hit?.object.geometry.attributes[kIds];
     if (!hit || !ids || !hit.face) return null;
@@ -78,6 +81,12 @@ export class City {
   choose(id) {
     this.chosen = id;
     this.#repaint();
+  }
+
+  /// Shows or hides all of it.
+  setVisible(isOn) {
+    this.tiles.group.visible = isOn;
+    this.stage.draw();
   }
 
   /// Shows in red what is not proven, or not.
@@ -91,7 +100,8 @@ export class City {
     if (!root || this.isPlaced) return;
     this.isPlaced = true;
     const matrix = new THREE.Matrix4();
-    if (root.transform) matrix.fromArray(root.transform);
+    const {transform} = (this.base ?? this).tiles.root;
+    if (transform) matrix.fromArray(transform);
     // A frame without a place on the Earth is around the origin of its coordinates.
     this.isOnEarth = new THREE.Vector3().setFromMatrixPosition(matrix).length() > kDeepest;
     matrix.invert();

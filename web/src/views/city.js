@@ -29,9 +29,7 @@ class CityView {
       onPick: (x, y) => this.#pick(x, y)
     });
     if (!this.stage) return;
-    this.city = new City(`${pagePath()}/3dtiles`, this.stage, (text) => {
-      this.state.textContent = `A part could not be loaded: ${text}`;
-    });
+    this.city = new City(`${pagePath()}/3dtiles`, this.stage, (text) => this.#complain(text));
     this.#addTools();
     this.stage.draw();
   }
@@ -51,19 +49,35 @@ class CityView {
     this.tools.append(
         button('Next finding', () => this.#nextUnproven()), button('All', () => this.#home()),
         checkBox('From above', false, (isOn) => this.stage.setMap(isOn)),
-        checkBox('Not proven in red', true, (isOn) => this.city.setProof(isOn)), search);
+        checkBox('Not proven in red', true, (isOn) => this.city.setProof(isOn)),
+        checkBox('Pins of findings', false, (isOn) => this.#showPins(isOn)), search);
   }
 
   #frameDone() {
-    const isLoading = this.city.update();
+    const isLoading = [this.city, this.pins].map((layer) => layer?.update()).some(Boolean);
     if (!this.isPlaced && this.city.isPlaced) {
       this.isPlaced = true;
       this.#home();
+      if (this.wantsPins) this.#showPins(true);
       const wanted = new URLSearchParams(location.hash.slice(1)).get('feature');
       if (wanted) this.show(wanted);
     }
     if (!isLoading && this.state.textContent === 'Loading') this.state.textContent = '';
     return isLoading;
+  }
+
+  /// Shows or hides the layer of the findings, which is loaded when it is first wanted.
+  #showPins(isOn) {
+    this.wantsPins = isOn;
+    if (!this.city.isPlaced || (!isOn && !this.pins)) return;
+    this.pins ??= new City(
+        `${pagePath()}/3dtiles?layer=findings`, this.stage, (text) => this.#complain(text),
+        this.city);
+    this.pins.setVisible(isOn);
+  }
+
+  #complain(text) {
+    this.state.textContent = `A part could not be loaded: ${text}`;
   }
 
   #home() {
@@ -72,7 +86,7 @@ class CityView {
   }
 
   #pick(x, y) {
-    const values = this.city.pick(x, y);
+    const values = this.pins?.pick(x, y) ?? this.city.pick(x, y);
     if (values?.id) this.show(values.id, false);
   }
 

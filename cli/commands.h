@@ -148,6 +148,7 @@ struct ServeCommand {
   bool requires_preconditions = false;
   std::string jobs_folder;         // "" for that in the data directory, if there is one
   std::string keys_file;           // "" for none
+  std::string user_field;          // of requests with a key, "" for none
   bool is_open = false;            // nobody needs a key, though other machines reach the address
   bool reading_is_public = false;  // with keys_file
   bool prints_options = false;     // and does nothing else

@@ -333,6 +333,10 @@ void add_serve(CLI::App& app, ServeCommand& command, Chosen& chosen) {
   sub->add_flag("--public-read", command.reading_is_public, "with --keys: reading needs no key")
       ->needs(keys)
       ->envname("WATERTIGHT_PUBLIC_READ");
+  sub->add_option(
+         "--user-field", command.user_field,
+         "with --keys: the field in which a proxy that adds a key names the user, for the log")
+      ->needs(keys);
   sub->add_flag("--open", command.is_open,
                 "needed to listen on an address of a network without --keys: who reaches it may "
                 "change everything")

@@ -336,21 +336,30 @@ std::optional<Response> unless_typed(const Route* route, const Request& request)
                 "the request needs a field Content-Type, which says what its body is");
 }
 
-/// What becomes of the body of a request that the gate has admitted: that of a job goes to a file.
-Admission admit_body(const Service& service, const Request& request, std::string key) {
+constexpr std::size_t kLongestUser = 256;  // bytes; a longer name is cut off
+
+/// The user whom a proxy names that has a key; "" for a request without key.
+std::string user_of(const Service& service, const Request& request, const std::string& key) {
+  const std::string& field = service.options.user_field;
+  const std::string* user = key.empty() || field.empty() ? nullptr : request.header(field);
+  return user == nullptr ? std::string() : user->substr(0, kLongestUser);
+}
+
+/// A request that the gate has admitted, with the place of its body: that of a job goes to a file.
+Admission admit_body(const Service& service, const Request& request, Admission admitted) {
   const Route* route = route_of(request);
-  if (auto refusal = unless_typed(route, request)) return {std::move(key), std::move(refusal)};
-  if (route == nullptr || route->handler != post_job) return {std::move(key)};
+  admitted.refusal = unless_typed(route, request);
+  if (admitted.refusal || route == nullptr || route->handler != post_job) return admitted;
   const auto target = parse_target(request.target);
-  Admission admission;
+  admitted.refusal = refusal_of(*target, *route);
+  if (admitted.refusal) return admitted;
   const CancelPoll never = [] { return false; };
-  if (auto refusal = refusal_of(*target, *route)) {
-    admission.refusal = std::move(refusal);
-  } else {
-    admission = begin_job({service, request, *target, never}, key);
-  }
-  admission.key = std::move(key);
-  return admission;
+  std::string owner = admitted.key;
+  if (!admitted.user.empty()) owner.append("/").append(admitted.user);
+  Admission begun = begin_job({service, request, *target, never}, owner);
+  begun.key = std::move(admitted.key);
+  begun.user = std::move(admitted.user);
+  return begun;
 }
 
 }  // namespace
@@ -358,7 +367,8 @@ Admission admit_body(const Service& service, const Request& request, std::string
 Admission admit(const Service& service, const Request& request) {
   Admission admission;
   if (service.gate != nullptr) admission = service.gate->admit(request, scope_of(request));
-  if (!admission.refusal) admission = admit_body(service, request, std::move(admission.key));
+  admission.user = user_of(service, request, admission.key);
+  if (!admission.refusal) admission = admit_body(service, request, std::move(admission));
   if (admission.refusal) {
     admission.refusal =
         with_leave_to_read(service.options.cors_origin, request, *std::move(admission.refusal));

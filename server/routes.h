@@ -32,6 +32,7 @@ struct RouteOptions {
   std::size_t longest_report = std::size_t{256} << 20U;  // of POST /validate, bytes
   bool is_encrypted = false;                             // whether clients speak HTTPS
   std::string base_url;     // the start of links; "": from the request (server/features/links.h)
+  std::string user_field;   // in which a proxy with a key names the user, lower case; "": none
   std::string cors_origin;  // whose pages may read answers (server/features/cors.h); "": none
   bool requires_preconditions = false;  // on every write; without one it gets 428
 };

@@ -150,6 +150,17 @@ void log_refresh(Gate& gate, spdlog::logger& logger) {
   }
 }
 
+RouteOptions route_options(const ServeOptions& options) {
+  RouteOptions chosen;
+  chosen.limits = options.limits;
+  chosen.requires_preconditions = options.requires_preconditions;
+  chosen.base_url = options.base_url;
+  chosen.is_encrypted = options.server.is_encrypted();
+  chosen.cors_origin = options.cors_origin;
+  chosen.user_field = options.user_field;
+  return chosen;
+}
+
 }  // namespace
 
 bool write_unless_full(std::string_view line) {
@@ -230,11 +241,7 @@ Status serve(const ServeOptions& options, StopSignals& signals) {
   RepresentationCache cache(options.cache_bytes);
   Budget document_memory(options.document_memory);
   Service service{store->get(), &workers, {}, readiness, &cache, &export_files, &document_memory};
-  service.options.limits = options.limits;
-  service.options.requires_preconditions = options.requires_preconditions;
-  service.options.base_url = options.base_url;
-  service.options.is_encrypted = options.server.is_encrypted();
-  service.options.cors_origin = options.cors_origin;
+  service.options = route_options(options);
   service.gate = gate;
   Metrics metrics;
   service.metrics = &metrics;

@@ -28,6 +28,7 @@ struct ServeOptions {
   std::string cors_origin;                     // RouteOptions::cors_origin
   std::string keys_file;                       // of Gate::open(); "" = nobody needs a key
   bool reading_is_public = false;              // with keys_file: reading needs no key
+  std::string user_field;                      // RouteOptions::user_field
   bool requires_preconditions = false;         // with every write of features
   std::uint64_t document_memory = 4ULL << 30;  // of the documents that are read whole, bytes
   std::size_t cache_bytes = 64ULL << 20;       // of the answers for items that are kept

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 
+#include "base/ascii.h"
 #include "cli/commands.h"
 #include "cli/opened_store.h"
 #include "cli/terminal/printable.h"
@@ -19,6 +21,10 @@
 
 namespace watertight::cli {
 namespace {
+
+/// The characters that the name of a field may have.
+constexpr std::string_view kFieldLetters =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
 bool is_loopback(const std::string& address) {
   return address.starts_with("127.") || address == "::1";
@@ -78,53 +84,73 @@ Status read_tls(const ServeCommand& command, server::ServerOptions& options) {
   return server::check_tls(options.tls_certificate, options.tls_key);
 }
 
+/// Reads the name of the field that names users; "" for none.
+Status read_user_field(const std::string& name, server::ServeOptions& options) {
+  options.user_field = lower_case(name);
+  if (name.find_first_not_of(kFieldLetters) == std::string::npos) return Done{};
+  return Error{ErrorCode::invalid_argument,
+               "is the name of a field of requests: letters, digits, - and _"};
+}
+
+/// Reads the address of the clients, which is one that other machines do not reach unless keys are
+/// asked for, or nobody who reaches it is a stranger.
+Status read_address(const ServeCommand& command, server::ServerOptions& options) {
+  const Status read = read_listen(command.listen, options);
+  if (!read || !command.keys_file.empty() || command.is_open || is_loopback(options.address)) {
+    return read;
+  }
+  return Error{ErrorCode::invalid_argument,
+               "at " + options.address +
+                   " other machines could change everything: name a file of keys (--keys FILE, "
+                   "which 'watertight key' makes), or give --open (in a container "
+                   "WATERTIGHT_OPEN=1) if nobody else reaches it"};
+}
+
+/// An option that is not right, and why.
+struct WrongOption {
+  const char* name;
+  Error error;
+};
+
+std::optional<WrongOption> read_options(const ServeCommand& command,
+                                        server::ServeOptions& options) {
+  options.keys_file = command.keys_file;
+  options.reading_is_public = command.reading_is_public;
+  options.jobs_folder = command.jobs_folder;
+  options.requires_preconditions = command.requires_preconditions;
+  const auto wrong = [](const char* name, const Status& status) {
+    return WrongOption{name, status.error()};
+  };
+  if (Status read = read_address(command, options.server); !read) return wrong("--listen", read);
+  if (Status read = read_user_field(command.user_field, options); !read) {
+    return wrong("--user-field", read);
+  }
+  if (Status read = read_base_url(command.base_url, options); !read) {
+    return wrong("--base-url", read);
+  }
+  if (Status read = read_origin(command.cors, options); !read) return wrong("--cors", read);
+  limit_addresses(command, options.server);
+  if (Status read = read_tls(command, options.server); !read) {
+    return wrong("--tls-certificate", read);
+  }
+  if (command.probes.empty()) return std::nullopt;
+  const Status read = read_listen(command.probes, options.probes.emplace());
+  return read ? std::optional<WrongOption>() : wrong("--probes", read);
+}
+
 }  // namespace
 
 Exit run(const ServeCommand& command) {
   server::ServeOptions options;
-  const Status status = read_listen(command.listen, options.server);
-  if (!status) {
-    complain("--listen", status.error());
+  if (const auto wrong = read_options(command, options)) {
+    complain(wrong->name, wrong->error);
     return Exit::error;
   }
-  if (command.keys_file.empty() && !command.is_open && !is_loopback(options.server.address)) {
-    complain("--listen",
-             {ErrorCode::invalid_argument,
-              "at " + options.server.address +
-                  " other machines could change everything: name a file of keys (--keys FILE, "
-                  "which 'watertight key' makes), or give --open (in a container "
-                  "WATERTIGHT_OPEN=1) if nobody else reaches it"});
-    return Exit::error;
-  }
-  options.keys_file = command.keys_file;
-  options.reading_is_public = command.reading_is_public;
-  options.jobs_folder = command.jobs_folder;
   const auto fail = [](const std::string& what, const Error& error) {
     complain(what, error);
     // A service that was stopped before it listened has done what it was told.
     return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
   };
-  if (const Status read = read_base_url(command.base_url, options); !read) {
-    complain("--base-url", read.error());
-    return Exit::error;
-  }
-  if (const Status checked = read_origin(command.cors, options); !checked) {
-    complain("--cors", checked.error());
-    return Exit::error;
-  }
-  limit_addresses(command, options.server);
-  if (const Status read = read_tls(command, options.server); !read) {
-    complain("--tls-certificate", read.error());
-    return Exit::error;
-  }
-  options.requires_preconditions = command.requires_preconditions;
-  if (!command.probes.empty()) {
-    const Status read = read_listen(command.probes, options.probes.emplace());
-    if (!read) {
-      complain("--probes", read.error());
-      return Exit::error;
-    }
-  }
   if (const Status given_up = give_up_rights(command.store); !given_up) {
     return fail("store", given_up.error());
   }

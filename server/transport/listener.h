@@ -24,6 +24,7 @@ struct Admission {
   std::optional<Response> refusal = std::nullopt;
   std::shared_ptr<BodySink> sink = nullptr;  // for the body; null: it stays in memory
   std::uint64_t sink_bytes = 0;              // the most bytes that the sink takes
+  std::string user = {};  // whom the proxy names that sent the key, for the log; "" = nobody
 };
 
 /// An answered request, as it is logged. The texts live as long as the call.

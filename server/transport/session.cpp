@@ -153,6 +153,7 @@ class Session {
   std::string method_;
   std::string target_;
   std::string key_;                        // the name of the access key, for the log
+  std::string user_;                       // the name that a proxy gives, for the log
   std::string note_;                       // of the answer, for the log
   ReceivedBody body_;                      // of the request, until the request has it
   std::optional<BudgetShare> body_share_;  // held from the header to the answer
@@ -226,6 +227,7 @@ awaitable<std::optional<Response>> Session::receive(RequestParser& parser) {
   if (environment_.application.admit) {
     Admission admission = environment_.application.admit(to_request(parser));
     key_ = std::move(admission.key);
+    user_ = std::move(admission.user);
     if (admission.refusal) co_return std::move(admission.refusal);
     sink_ = std::move(admission.sink);
     if (sink_) most_bytes_ = admission.sink_bytes;
@@ -512,9 +514,11 @@ void Session::log_answer(unsigned status, std::uint64_t bytes, Clock::time_point
                    " target=" + quoted(target_) + " status=" + std::to_string(status) +
                    " bytes=" + std::to_string(bytes) + " ms=" + std::to_string(milliseconds) +
                    (key_.empty() ? std::string() : " key=" + quoted(key_)) +
+                   (user_.empty() ? std::string() : " user=" + quoted(user_)) +
                    (note_.empty() ? std::string() : " note=" + quoted(note_)) +
                    (sent ? std::string() : " cut-off=" + quoted(to_string(sent.error()))));
   key_.clear();
+  user_.clear();
   note_.clear();
 }
 

@@ -162,6 +162,23 @@ TEST_CASE("a refusal says how to come in, to web maps too") {
   CHECK(*samples::header_of(*admission.refusal, "Access-Control-Allow-Origin") == "*");
 }
 
+TEST_CASE("a proxy names its user, who counts only beside a key") {
+  const Keys keys;
+  const auto gate = keys.gate(Scope::read);
+  server::Service service;
+  service.gate = gate.get();
+  const auto user_of = [&](const std::string& authorization) {
+    Request request = asking("GET", "/", authorization);
+    request.headers.push_back({"x-forwarded-user", std::string(300, 'a')});
+    return server::admit(service, request).user;
+  };
+  CHECK(user_of("Bearer " + keys.keys[0]).empty());
+  service.options.user_field = "x-forwarded-user";
+  CHECK(user_of("Bearer " + keys.keys[0]) == std::string(256, 'a'));
+  CHECK(user_of("Bearer wt_wrong").empty());
+  CHECK(user_of("").empty());
+}
+
 TEST_CASE("keys that change count at once, and a wrong file changes nothing") {
   const Keys keys;
   const auto gate = keys.gate();
@@ -224,7 +241,9 @@ TEST_CASE("a request without right is refused before its body comes") {
     return server::Response{200, "text/plain", "done", {}};
   };
   application.admit = [](const Request& request) -> server::Admission {
-    if (request.header("authorization") != nullptr) return {"somebody", std::nullopt};
+    server::Admission admission{"somebody", std::nullopt};
+    admission.user = "ada";
+    if (request.header("authorization") != nullptr) return admission;
     return {"", server::refuse(401, "unauthorized", "no key")};
   };
   std::string log;
@@ -248,7 +267,7 @@ TEST_CASE("a request without right is refused before its body comes") {
     CHECK(client.receive_answer().starts_with("HTTP/1.1 401 "));
   }
   (*server)->stop();
-  CHECK(log.find("status=200 bytes=4 ms=0 key=\"somebody\"") != std::string::npos);
+  CHECK(log.find("status=200 bytes=4 ms=0 key=\"somebody\" user=\"ada\"") != std::string::npos);
   CHECK(log.find("somebody", log.find("somebody") + 1) == std::string::npos);
 }
 

@@ -222,7 +222,7 @@ Result<std::optional<FeatureText>> FeatureReader::next() {
   return std::optional(std::move(text));
 }
 
-Result<Feature> FeatureReader::read(FeatureText text) const {
+Result<Feature> FeatureReader::read(FeatureText& text) const {
   if (text.ready) return *std::move(text.ready);
   auto feature = read_city_json_feature(header_, text.line, options_);
   if (!feature) return in_line(std::move(feature).error(), text);

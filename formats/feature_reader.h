@@ -57,9 +57,11 @@ class FeatureReader {
   /// line. Not thread-safe.
   Result<std::optional<FeatureText>> next();
 
-  /// Reads a feature that next() found. Thread-safe, also while next() runs. Errors: those of
-  /// read_city_json_feature(), with the line number; byte offsets are those of the input.
-  Result<Feature> read(FeatureText text) const;
+  /// Reads a feature that next() found; its line stays as it is. Thread-safe, also while next()
+  /// runs. Errors: those of read_city_json_feature(), with the line number; byte offsets are those
+  /// of the input.
+  Result<Feature> read(FeatureText& text) const;
+  Result<Feature> read(FeatureText&& text) const { return read(text); }
 
   /// The format, header and notes of the document; next() takes its features.
   const Document& document() const { return document_; }

@@ -43,9 +43,9 @@ class Stream {
         options_.progress(outcome_.features, bytes);
       };
     }
-    const FeatureWork work = [this](std::uint64_t number, const formats::FeaturePlace& place,
+    const FeatureWork work = [this](std::uint64_t number, const formats::FeatureText& text,
                                     Result<Feature> feature) {
-      return validate(number, place, std::move(feature));
+      return validate(number, text.place, std::move(feature));
     };
     const auto count = stream_features(reader_, stream, work);
     if (!count) return count.error();

@@ -48,13 +48,15 @@ class Template:
         self.solids = solids_of(feature)
         self.vertices = feature.pop("vertices")
         self.width = max((v[0] for v in self.vertices), default=0)
+        self.low = [min((v[axis] for v in self.vertices), default=0) for axis in range(2)]
+        self.high = [max((v[axis] for v in self.vertices), default=0) for axis in range(2)]
         text = json.dumps(feature, separators=(",", ":"))
         for name in sorted(feature["CityObjects"], key=len, reverse=True):
             text = text.replace(json.dumps(name), json.dumps(name)[:-1] + "\0\"")
         self.parts = text[:-1].split("\0")
 
-    def copy(self, number, shift):
-        vertices = ",".join(f"[{x + shift},{y},{z}]" for x, y, z in self.vertices)
+    def copy(self, number, shift, shift_y=0):
+        vertices = ",".join(f"[{x + shift},{y + shift_y},{z}]" for x, y, z in self.vertices)
         return f"-{number}".join(self.parts) + f',"vertices":[{vertices}]}}\n'
 
 

@@ -74,10 +74,10 @@ class TileRun {
     };
     const auto streamed = pipeline::stream_features(
         *reader, options,
-        [this](std::uint64_t, const formats::FeaturePlace& place, Result<Feature> feature) {
+        [this](std::uint64_t, const formats::FeatureText& text, Result<Feature> feature) {
           const std::string id = feature ? feature->id : std::string();
-          auto mesh = std::make_shared<Meshed>(mesh_of(std::move(feature)));
-          return [this, mesh, place, id]() -> Status {
+          auto mesh = std::make_shared<Meshed>(mesh_of(std::move(feature), text.line));
+          return [this, mesh, place = text.place, id]() -> Status {
             take(std::move(*mesh), place, id);
             return Done{};
           };
@@ -112,9 +112,9 @@ class TileRun {
       if (!text) return std::move(text).error();
       if (!*text) return Done{};
       const formats::FeaturePlace place = (*text)->place;
-      auto feature = reader.read(*std::move(*text));
+      auto feature = reader.read(**text);
       const std::string id = feature ? feature->id : std::string();
-      take(mesh_of(std::move(feature)), place, id);
+      take(mesh_of(std::move(feature), (*text)->line), place, id);
     }
     return Done{};
   }
@@ -130,18 +130,20 @@ class TileRun {
     frame_ = *frame;
   }
 
-  Result<formats::CityFeature> city_feature(const Feature& feature) const {
+  /// `line`: the text of the feature; "" where the document has none.
+  Result<formats::CityFeature> city_feature(const Feature& feature, std::string_view line) const {
     if (!header_) return formats::city_feature_of(feature);
-    const auto text = formats::write_city_json_feature(*header_, feature);
-    if (!text) return text.error();
     std::optional<std::string_view> lod;
     if (!command_.lod.empty()) lod = command_.lod;
+    if (!line.empty()) return shapes_->read(line, feature.id, lod);
+    const auto text = formats::write_city_json_feature(*header_, feature);
+    if (!text) return text.error();
     return shapes_->read(*text, feature.id, lod);
   }
 
-  Meshed mesh_of(Result<Feature> feature) {
+  Meshed mesh_of(Result<Feature> feature, std::string_view line) {
     if (!feature) return std::move(feature).error();
-    auto city = city_feature(*feature);
+    auto city = city_feature(*feature, line);
     if (!city) return std::move(city).error();
     if (city->is_too_large) {
       return Error{ErrorCode::limit_exceeded, "the geometry has more vertices than are shown"};

@@ -50,11 +50,9 @@ class FeatureStream {
   void work_to_the_end() {
     try {
       for (auto found = take_next(); found; found = take_next()) {
-        const std::uint64_t bytes = found->text.line.size();
-        const formats::FeaturePlace place = found->text.place;
-        Result<Feature> feature = read(std::move(found->text));
-        Delivery delivery = work_(found->number, place, std::move(feature));
-        put_back(found->number, {bytes, std::move(delivery)});
+        Result<Feature> feature = read(found->text);
+        Delivery delivery = work_(found->number, found->text, std::move(feature));
+        put_back(found->number, {found->text.line.size(), std::move(delivery)});
       }
     } catch (...) {
       stop(Error{ErrorCode::unavailable, "a thread failed"});
@@ -62,9 +60,9 @@ class FeatureStream {
     }
   }
 
-  Result<Feature> read(formats::FeatureText text) const {
+  Result<Feature> read(formats::FeatureText& text) const {
     const StageTimer timer(options_.stages, Stage::reading);
-    return reader_.read(std::move(text));
+    return reader_.read(text);
   }
 
   std::optional<Found> take_next();

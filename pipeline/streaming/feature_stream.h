@@ -16,9 +16,9 @@ namespace watertight::pipeline {
 /// Hands the result of one feature on. Called in document order, from one thread at a time.
 using Delivery = std::function<Status()>;
 /// Works on a feature, or on the error of a feature or of the rest of the document that could not
-/// be read (then without a place). `number` is the number in the document, from 0. Called from
-/// several threads at once.
-using FeatureWork = std::function<Delivery(std::uint64_t number, const formats::FeaturePlace& place,
+/// be read (then without a place). `number` is the number in the document, from 0; `text` has the
+/// place and, in a sequence, the line. Called from several threads at once.
+using FeatureWork = std::function<Delivery(std::uint64_t number, const formats::FeatureText& text,
                                            Result<Feature> feature)>;
 
 struct FeatureStreamOptions {

@@ -78,14 +78,14 @@ Status Ingestion::add(formats::FeatureReader& reader) {
                               group_options(options_.groups, options_.certify));
   CellInspector cells(reader.document(), workers_, options_.certify, options_.groups,
                       options_.threads, options_.is_cancelled);
-  const FeatureWork work = [&](std::uint64_t, const formats::FeaturePlace& place,
+  const FeatureWork work = [&](std::uint64_t, const formats::FeatureText& text,
                                Result<Feature> feature) -> Delivery {
     if (!feature) return [error = std::move(feature).error()]() -> Status { return error; };
     const std::uint32_t srid = feature->srid;
     auto processed = process(*std::move(feature), *shared, workers_, options_, templates, cells);
     if (!processed) return [error = std::move(processed).error()]() -> Status { return error; };
     const auto taken =
-        std::make_shared<Processed>(Processed{std::move(processed->outcome), place, srid, {}});
+        std::make_shared<Processed>(Processed{std::move(processed->outcome), text.place, srid, {}});
     if (processed->encoded) {
       const StageTimer timer(options_.stages, Stage::packing);
       auto prepared = packer_->prepare(*std::move(processed->encoded));

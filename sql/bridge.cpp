@@ -8,15 +8,19 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/bytes.h"
 #include "base/result.h"
 #include "codec/blob.h"
 #include "codec/page.h"
 #include "formats/ewkb.h"
+#include "sql/faces.h"
 #include "sql/info_json.h"
+#include "sql/make_value.h"
 #include "validate/certify.h"
 #include "validate/report_json.h"
 
@@ -187,13 +191,9 @@ wt_rule_choice rules_of(const wt_job& job) {
   return job.rules == nullptr ? wt_default_rules() : *job.rules;
 }
 
-/// Reads a solid and certifies it by the rules of the job. Fails unless the verdict is valid or
-/// invalid.
-Result<Examined> examine(const wt_job& job, const CallLimits& call) {
-  Result<SubmittedSolid> submitted = formats::read_ewkb(bytes_of(job), call.of_input());
-  if (!submitted) return call.of_reading(std::move(submitted).error());
+/// The rules of a job as options of the validator.
+CertifyOptions options_of(const wt_job& job, const CallLimits& call) {
   CertifyOptions options;
-  options.rounded = submitted->rounded;
   options.limits = call.of_input();
   const wt_rule_choice rules = rules_of(job);
   options.tolerances.planarity_metres = rules.planarity;
@@ -202,14 +202,36 @@ Result<Examined> examine(const wt_job& job, const CallLimits& call) {
   options.ladder.strict = rules.is_strict;
   options.ladder.cancel = call.poll();
   options.ladder.memory_in_engine = call.memory_bytes();
+  return options;
+}
+
+/// Certifies a solid that was read. Nothing, and a failure of the reply, unless the verdict is
+/// valid or invalid.
+std::optional<Examined> certify_read(const wt_job& job, const CallLimits& call,
+                                     Result<SubmittedSolid> submitted, wt_reply* reply) {
+  if (!submitted) {
+    fail(reply, call.of_reading(std::move(submitted).error()));
+    return std::nullopt;
+  }
+  CertifyOptions options = options_of(job, call);
+  options.rounded = submitted->rounded;
   Inspection inspection =
       certify(submitted->solid, job.engine == nullptr ? nullptr : &job.engine->workers, options);
-  if (Status in_time = call.check(); !in_time) return std::move(in_time).error();
+  if (const Status in_time = call.check(); !in_time) {
+    fail(reply, in_time.error());
+    return std::nullopt;
+  }
   if (inspection.report.verdict == Verdict::undecided) {
-    return Error{ErrorCode::cancelled,
-                 "the solid is undecided: " + inspection.report.undecided_reason};
+    fail(reply, WATERTIGHT_UNDECIDED,
+         "the solid is undecided: " + inspection.report.undecided_reason);
+    return std::nullopt;
   }
   return Examined{std::move(*submitted), std::move(inspection)};
+}
+
+/// Reads EWKB and certifies it by the rules of the job.
+std::optional<Examined> examine(const wt_job& job, const CallLimits& call, wt_reply* reply) {
+  return certify_read(job, call, formats::read_ewkb(bytes_of(job), call.of_input()), reply);
 }
 
 /// The errors of a report, one a line, the first ones only.
@@ -227,10 +249,15 @@ std::string errors_of(const Report& report) {
   return lines;
 }
 
+void fail_invalid(const Report& report, wt_reply* reply) {
+  fail(reply, "22023", "the solid is invalid", errors_of(report));
+  reply->failure.is_invalid = true;
+}
+
 void validate_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
-  const Result<Examined> examined = examine(job, call);
-  if (!examined) return fail(reply, examined.error());
+  const auto examined = examine(job, call, reply);
+  if (!examined) return;
   // The report of an immutable function must not say how the verdict was reached, as a helper can
   // crash once.
   Report report = examined->inspection.report;
@@ -245,20 +272,17 @@ void validate_into(const wt_job& job, wt_reply* reply) {
 
 void is_valid_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
-  const Result<Examined> examined = examine(job, call);
-  if (!examined) return fail(reply, examined.error());
+  const auto examined = examine(job, call, reply);
+  if (!examined) return;
   reply->truth = examined->inspection.report.verdict == Verdict::valid;
 }
 
 void encode_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
-  const Result<Examined> examined = examine(job, call);
-  if (!examined) return fail(reply, examined.error());
-  const Inspection& inspection = examined->inspection;
-  if (!inspection.certified) {
-    return fail(reply, "22023", "the solid is invalid", errors_of(inspection.report));
-  }
-  const Result<Bytes> blob = encode(inspection.certified->solid);
+  const auto examined = examine(job, call, reply);
+  if (!examined) return;
+  if (!examined->inspection.certified) return fail_invalid(examined->inspection.report, reply);
+  const Result<Bytes> blob = encode(examined->inspection.certified->solid);
   if (!blob) return fail(reply, blob.error());
   if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
   answer(reply, *blob);
@@ -300,6 +324,130 @@ void rules_into(const wt_job& job, wt_reply* reply) {
   if (!info) return fail(reply, call.of_reading(info.error()));
   if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
   answer(reply, as_bytes(rules_json(info->acceptance)));
+}
+
+/// Answers with the value of a solid and its blob.
+void value_into(const CallLimits& call, const Solid& solid, const Result<Bytes>& blob,
+                wt_reply* reply) {
+  if (!blob) return fail(reply, blob.error());
+  const Result<Bytes> value = make_value(solid, *blob);
+  if (!value) return fail(reply, value.error());
+  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
+  answer(reply, *value);
+}
+
+/// Answers a solid that was read with its value.
+void solid_of_read(const wt_job& job, const CallLimits& call, Result<SubmittedSolid> submitted,
+                   wt_reply* reply) {
+  const auto examined = certify_read(job, call, std::move(submitted), reply);
+  if (!examined) return;
+  if (!examined->inspection.certified) return fail_invalid(examined->inspection.report, reply);
+  const ValidSolid& solid = examined->inspection.certified->solid;
+  value_into(call, solid.solid(), encode(solid), reply);
+}
+
+/// Whether this program can judge by the rules that a blob states.
+Status check_acceptance(const Acceptance& acceptance) {
+  const Tolerances& tolerances = acceptance.tolerances;
+  const auto is_within = [](double value, double least, double most) {
+    return value >= least && value <= most;
+  };
+  if (acceptance.rule_set != geometry::kRuleSet) {
+    return Error{ErrorCode::unsupported,
+                 "the blob states rule set " + std::to_string(acceptance.rule_set)};
+  }
+  if (!is_within(tolerances.planarity_metres, WATERTIGHT_LEAST_PLANARITY,
+                 WATERTIGHT_MOST_PLANARITY) ||
+      !is_within(tolerances.planarity_degrees, WATERTIGHT_LEAST_ANGLE, WATERTIGHT_MOST_ANGLE) ||
+      tolerances.snap_metres != 0) {
+    return Error{ErrorCode::invalid_argument, "the blob states tolerances outside their ranges"};
+  }
+  return Done{};
+}
+
+/// Answers a blob with its value. The exact tests run again, with the tolerances that the blob
+/// states; its proof by tetrahedralization is believed.
+void solid_of_blob(const wt_job& job, const CallLimits& call, wt_reply* reply) {
+  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
+  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
+  const Acceptance& acceptance = decoded->info.acceptance;
+  if (const Status checked = check_acceptance(acceptance); !checked) {
+    return fail(reply, checked.error());
+  }
+  CertifyOptions options = options_of(job, call);
+  options.tolerances = acceptance.tolerances;
+  options.proof = Proof::boundary;
+  options.ladder.strict = false;
+  const Inspection inspection = certify(decoded->solid, nullptr, options);
+  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
+  if (!inspection.certified) return fail_invalid(inspection.report, reply);
+  const auto order = compare(inspection.certified->solid.solid(), decoded->solid);
+  if (!order) return fail(reply, order.error());
+  if (*order != 0) {
+    return fail(reply, "22023", "the blob has another solid than a valid one: it is inside out");
+  }
+  value_into(call, decoded->solid, Bytes(job.bytes, job.bytes + job.size), reply);
+}
+
+void solid_into(const wt_job& job, wt_reply* reply) {
+  const CallLimits call(job);
+  const bool is_blob = job.size >= 2 && job.bytes[0] == 'W' && job.bytes[1] == 'T';
+  if (is_blob) return solid_of_blob(job, call, reply);
+  solid_of_read(job, call, formats::read_ewkb(bytes_of(job), call.of_input()), reply);
+}
+
+void solid_of_wkt_into(const wt_job& job, wt_reply* reply) {
+  const CallLimits call(job);
+  solid_of_read(job, call, formats::read_wkt(as_text(bytes_of(job)), call.of_input()), reply);
+}
+
+void wkt_into(const wt_job& job, wt_reply* reply) {
+  const CallLimits call(job);
+  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
+  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
+  const std::string text = formats::write_wkt(decoded->solid);
+  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
+  answer(reply, as_bytes(text));
+}
+
+void measures_into(const wt_job& job, wt_measures* measures, wt_reply* reply) {
+  const CallLimits call(job);
+  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
+  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
+  const geometry::Measures measured = measures_of(decoded->solid);
+  std::ranges::copy(measured.box_min, measures->box_min);
+  std::ranges::copy(measured.box_max, measures->box_max);
+  measures->genus = measured.genus;
+  measures->vertices = measured.vertices;
+  measures->facets = measured.facets;
+  measures->rings = measured.rings;
+  measures->shells = measured.shells;
+}
+
+void faces_into(const wt_job& job, wt_reply* reply) {
+  const CallLimits call(job);
+  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
+  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
+  const std::vector<wt_face> faces = faces_of(decoded->solid);
+  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
+  answer(reply,
+         {reinterpret_cast<const std::uint8_t*>(faces.data()), faces.size() * sizeof(wt_face)});
+}
+
+/// compare(), as a number; 0 after a failure of the reply.
+int compare_blobs(const wt_job& job, ByteView other, wt_reply* reply) {
+  const CallLimits call(job);
+  const Result<Decoded> left = decode(bytes_of(job), call.of_input());
+  const Result<Decoded> right = decode(other, call.of_input());
+  Result<int> order = 0;
+  if (!left || !right) {
+    order = call.of_reading(left ? right.error() : left.error());
+  } else {
+    order = compare(left->solid, right->solid);
+  }
+  if (order) return *order;
+  fail(reply, order.error());
+  return 0;
 }
 
 }  // namespace
@@ -359,6 +507,33 @@ void wt_bridge_info(const wt_job* job, wt_reply* reply) noexcept {
 
 void wt_bridge_rules_of(const wt_job* job, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::rules_into(*job, reply); });
+}
+
+void wt_bridge_solid(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::solid_into(*job, reply); });
+}
+
+void wt_bridge_solid_of_wkt(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::solid_of_wkt_into(*job, reply); });
+}
+
+void wt_bridge_wkt(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::wkt_into(*job, reply); });
+}
+
+void wt_bridge_measures(const wt_job* job, wt_measures* measures, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::measures_into(*job, measures, reply); });
+}
+
+void wt_bridge_faces(const wt_job* job, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::faces_into(*job, reply); });
+}
+
+int wt_bridge_compare(const wt_job* job, const uint8_t* other, size_t other_size,
+                      wt_reply* reply) noexcept {
+  int order = 0;
+  guarded(reply, [&] { order = watertight::sql::compare_blobs(*job, {other, other_size}, reply); });
+  return order;
 }
 
 wt_rule_choice wt_default_rules() noexcept {

@@ -29,7 +29,11 @@ typedef struct wt_failure {
   char sqlstate[6];  /* "" = no failure */
   char message[512]; /* one sentence */
   char* detail;      /* may be NULL; owned by the reply */
+  bool is_invalid;   /* the solid was judged, and is invalid; the detail has its findings */
 } wt_failure;
+
+/** The SQLSTATE of a solid that is undecided: a helper process crashed or reached its limits. */
+#define WATERTIGHT_UNDECIDED "WT001"
 
 /** The answer of a function, all zero bytes at first; wt_reply_clear() frees and zeroes it. */
 typedef struct wt_reply {
@@ -83,8 +87,9 @@ typedef struct wt_job {
   int32_t slot;                /* the number of a solid of a page, from 0 */
 } wt_job;
 
-/* Each function below fills a reply that is all zero. An undecided solid is a failure (57014, can
- * be tried again), never a value; a reached limit is a failure too (54000). */
+/* Each function below fills a reply that is all zero. An undecided solid is a failure
+ * (WATERTIGHT_UNDECIDED, can be tried again), never a value; a reached limit is a failure too
+ * (54000). */
 
 /** Answers EWKB with the report as JSON, without times; its parameters are the rules. */
 void wt_bridge_validate(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
@@ -104,6 +109,51 @@ void wt_bridge_info(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with the rules under which its solid was accepted, as JSON. A blob does not say
  *  whether they were strict: strict rules accept fewer solids, and none by another proof. */
 void wt_bridge_rules_of(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
+/** Answers EWKB, or a blob, with a value of the type `solid` (sql/solid_value.h). EWKB is judged by
+ *  the rules; a blob by the exact tests and the rules that it states, whatever those of the job
+ *  are. An invalid solid fails with 22023, and is_invalid. */
+void wt_bridge_solid(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers WKT, UTF-8, in the same way. */
+void wt_bridge_solid_of_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a blob with WKT, UTF-8. */
+void wt_bridge_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
+/** The measures of a solid that take its coordinates. */
+typedef struct wt_measures {
+  double box_min[3]; /* in units of the reference system */
+  double box_max[3];
+  int64_t genus; /* the sum over all shells */
+  uint32_t vertices;
+  uint32_t facets;
+  uint32_t rings;
+  uint32_t shells;
+} wt_measures;
+/** Measures the solid of a blob; the reply has no value. */
+void wt_bridge_measures(const wt_job* job, wt_measures* measures,
+                        wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
+/** A facet of a solid. Lengths and areas are in units of the reference system, angles in degrees.
+ */
+typedef struct wt_face {
+  uint32_t shell; /* 0: the exterior one */
+  uint32_t facet; /* its number in the solid, from 0 */
+  uint32_t rings;
+  double area;
+  double normal[3];   /* of length 1, out of the solid */
+  double tilt;        /* of the normal from straight up: 0 a flat roof, 90 a wall, 180 a floor */
+  double azimuth;     /* of the normal, clockwise from the y axis (north), 0 to 360; NaN without */
+  double centroid[3]; /* of its triangles */
+  double planarity;   /* the largest distance of a corner from the fitted plane */
+} wt_face;
+/** Answers a blob with an array of wt_face. */
+void wt_bridge_faces(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
+/** Compares the solids of two blobs, of the first job and of `other`: below, at or above 0, as the
+ *  return value. 0 if they are equal (canonical form, lattice and reference system), and after a
+ *  failure. */
+int wt_bridge_compare(const wt_job* job, const uint8_t* other, size_t other_size,
+                      wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** The version, such as "0.1.0"; static. */
 const char* wt_bridge_version(void) WATERTIGHT_NOEXCEPT;
 

@@ -17,7 +17,7 @@
 #include "utils/memutils.h"
 #include "utils/numeric.h"
 
-#include "sql/bridge.h"
+#include "sql/backend.h"
 
 PG_MODULE_MAGIC;
 
@@ -92,7 +92,7 @@ clear_reply(void *owned)
 	wt_reply_clear(&((OwnedReply *) owned)->reply);
 }
 
-static wt_reply *
+wt_reply *
 new_reply(void)
 {
 	OwnedReply *owned = palloc0(sizeof(OwnedReply));
@@ -103,7 +103,7 @@ new_reply(void)
 	return &owned->reply;
 }
 
-static char *
+char *
 from_utf8(const char *text)
 {
 	return pg_any_to_server(text, (int) strlen(text), PG_UTF8);
@@ -114,21 +114,42 @@ raise_failure(const wt_failure *failure)
 {
 	const char *state = failure->sqlstate;
 	int			code = MAKE_SQLSTATE(state[0], state[1], state[2], state[3], state[4]);
+	const char *hint = NULL;
 
-	if (code == ERRCODE_QUERY_CANCELED)
-	{
-		/* PostgreSQL reports a requested end with its reason (statement_timeout, user, shutdown). */
-		CHECK_FOR_INTERRUPTS();
-		ereport(ERROR,
-				(errcode(code), errmsg("%s", from_utf8(failure->message)),
-				 errhint("Try again: a helper process crashed, or the solid needs more time or memory than it may use.")));
-	}
+	if (strcmp(state, WATERTIGHT_UNDECIDED) == 0)
+		hint = "Try again: a helper process crashed, or the solid needs more time or memory than it may use.";
+	else if (failure->is_invalid)
+		hint = "wt_validate() gives the whole report, and wt_try_solid() NULL instead of this error.";
 	ereport(ERROR,
 			(errcode(code), errmsg("%s", from_utf8(failure->message)),
-			 failure->detail == NULL ? 0 : errdetail("%s", from_utf8(failure->detail))));
+			 failure->detail == NULL ? 0 : errdetail("%s", from_utf8(failure->detail)),
+			 hint == NULL ? 0 : errhint("%s", hint)));
 }
 
-typedef void (*bridge_function) (const wt_job *job, wt_reply *reply);
+wt_job
+new_job(const uint8_t *bytes, size_t size, const wt_rule_choice *rules, bool needs_engine)
+{
+	wt_job		job;
+
+	job.bytes = bytes;
+	job.size = size;
+	job.engine = needs_engine ? current_engine() : NULL;
+	job.poll = is_interrupted;
+	job.max_seconds = (uint32_t) max_seconds_setting;
+	job.max_memory = (uint32_t) max_memory_setting;
+	job.rules = rules;
+	job.slot = 0;
+	return job;
+}
+
+void
+check_reply(const wt_reply *reply)
+{
+	/* PostgreSQL reports a requested end with its reason (statement_timeout, user, shutdown). */
+	CHECK_FOR_INTERRUPTS();
+	if (reply->failure.sqlstate[0] != '\0')
+		raise_failure(&reply->failure);
+}
 
 /* Runs one bridge function on a bytea argument by some rules (NULL: the default ones), or for a
  * solid of a page. Returns its reply, or raises. */
@@ -138,20 +159,12 @@ run_on(bridge_function function, Datum argument, const wt_rule_choice *rules, bo
 {
 	wt_reply   *reply = new_reply();
 	bytea	   *input = DatumGetByteaPP(argument);
-	wt_job		job;
+	wt_job		job = new_job((const uint8_t *) VARDATA_ANY(input), VARSIZE_ANY_EXHDR(input), rules,
+							  needs_engine);
 
-	job.bytes = (const uint8_t *) VARDATA_ANY(input);
-	job.size = VARSIZE_ANY_EXHDR(input);
-	job.engine = needs_engine ? current_engine() : NULL;
-	job.poll = is_interrupted;
-	job.max_seconds = (uint32_t) max_seconds_setting;
-	job.max_memory = (uint32_t) max_memory_setting;
-	job.rules = rules;
 	job.slot = slot;
 	function(&job, reply);
-	CHECK_FOR_INTERRUPTS();
-	if (reply->failure.sqlstate[0] != '\0')
-		raise_failure(&reply->failure);
+	check_reply(reply);
 	return reply;
 }
 
@@ -246,7 +259,7 @@ take_rule(wt_rule_choice *rules, const char *name, const JsonbValue *value)
 
 /* The rules in a jsonb object; those that it does not have are the default ones, whatever the
  * settings are, so that equal arguments give equal results. */
-static wt_rule_choice
+wt_rule_choice
 rules_of_jsonb(Jsonb *json)
 {
 	wt_rule_choice	rules = wt_default_rules();
@@ -281,7 +294,7 @@ judge(bridge_function function, FunctionCallInfo fcinfo)
 	return run(function, PG_GETARG_DATUM(0), &rules, true);
 }
 
-static Datum
+Datum
 bytea_of(wt_reply *reply)
 {
 	bytea	   *value = palloc(VARHDRSZ + reply->size);
@@ -292,7 +305,7 @@ bytea_of(wt_reply *reply)
 	return PointerGetDatum(value);
 }
 
-static Datum
+Datum
 jsonb_of(wt_reply *reply)
 {
 	Datum		value = DirectFunctionCall1(jsonb_in, CStringGetDatum(from_utf8((char *) reply->bytes)));

@@ -111,7 +111,7 @@ def main():
     parser.add_argument("--buildings", type=int, default=20_000)
     parser.add_argument("--stored", type=int, default=0)
     parser.add_argument("documents", nargs="*", type=pathlib.Path)
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     program = str(pathlib.Path(options.program).resolve())
     for document in options.documents:
         measure_program(program, document, options.buildings)

@@ -9,7 +9,7 @@ set -euo pipefail
 source=$(cd "$1" && pwd)
 build=$(cd "$2" && pwd)
 program=${3:-}
-tests=(functions encode hostile helpers limits rules)
+tests=(functions encode hostile helpers limits rules solid solid_index)
 
 folder=$(mktemp -d /tmp/watertight-sql-XXXXXX)
 started=no
@@ -67,6 +67,16 @@ run "$bin/psql" -X -q -v ON_ERROR_STOP=1 "${connect[@]}" -d restored <"$folder/s
 [ "$(ask restored "$sum")" = "$(ask regression "$sum")" ] || { echo "a dump brought other solids back"; exit 1; }
 echo "a dump brings solids back under other settings"
 
+# A column of solids and its index come back too, value by value.
+ask regression "CREATE TABLE kept_town AS SELECT name, shape, wt_volume(shape) AS volume FROM town"
+ask regression "CREATE INDEX kept_box ON kept_town USING gist (shape)"
+run "$bin/pg_dump" "${connect[@]}" -d regression -t kept_town >"$folder/kept.sql"
+run "$bin/psql" -X -q -v ON_ERROR_STOP=1 "${connect[@]}" -d restored <"$folder/kept.sql" >/dev/null
+sum_of_kept="SELECT md5(string_agg(name || shape::text || volume, ',' ORDER BY name)), count(*) FROM kept_town WHERE wt_volume(shape) = volume"
+[ "$(ask restored "$sum_of_kept")" = "$(ask regression "$sum_of_kept")" ] || { echo "a dump brought other values of type solid back"; exit 1; }
+[ "$(ask restored "SELECT count(*) FROM kept_town")" -eq 4 ] || { echo "a dump lost solids"; exit 1; }
+echo "a dump brings a column of solids back"
+
 # An installation of the former version is updated; its functions, indexes and columns stay.
 functions="SELECT p.oid::regprocedure, provolatile, proisstrict, proparallel, procost, obj_description(p.oid, 'pg_proc')
   FROM pg_proc p JOIN pg_depend d ON d.objid = p.oid AND d.deptype = 'e'
@@ -91,6 +101,27 @@ run "$bin/pg_dump" "${connect[@]}" -d former | run "$bin/psql" -X -q -v ON_ERROR
   -d postgres >/dev/null || { echo "an updated database cannot be restored"; exit 1; }
 [ "$(ask postgres "SELECT count(*) FROM shapes")" -eq 2 ] || { echo "a restored database lacks solids"; exit 1; }
 echo "an installation of version 0.1.0 is updated"
+
+# The statements of the guide, in its order; those that it says fail do.
+guide=$source/docs/sql.md
+ask postgres "CREATE DATABASE guide"
+# The pieces are numbered; the name of each says what becomes of it.
+awk -v folder="$folder" '/^```sql/ { piece = sprintf("%s/guide-%03d.%s.sql", folder, ++count, $2 == "fails" ? "fails" : "works"); next }
+  /^```$/ { piece = ""; next } piece != "" { print >piece }' "$guide"
+pieces=0
+for piece in "$folder"/guide-*.sql; do
+  pieces=$((pieces + 1))
+  outcome=works
+  run "$bin/psql" -X -q -v ON_ERROR_STOP=1 "${connect[@]}" -d guide <"$piece" >"$folder/guide.out" 2>&1 || outcome=fails
+  case $piece in *."$outcome".sql) ;; *)
+    echo "a statement of docs/sql.md $outcome:"
+    cat "$piece" "$folder/guide.out"
+    exit 1 ;;
+  esac
+done
+[ "$(ask guide "SELECT count(*) FROM building")" -eq 2 ] || { echo "the guide has other buildings"; exit 1; }
+[ "$(ask guide "SELECT string_agg(code::text, ',' ORDER BY code) FROM refused")" = 301,302 ] || { echo "the guide refuses for other reasons"; exit 1; }
+echo "$pieces pieces of docs/sql.md do what it says"
 
 if [ -n "$program" ]; then
   query() { run "$bin/psql" -X -q -At "${connect[@]}" -d regression -c "$1"; }
@@ -127,6 +158,15 @@ if [ -x "$build/bin/encode_documents" ]; then
     UNION ALL SELECT 'another blob', name FROM documents
       WHERE CASE WHEN blob IS NOT NULL THEN wt_encode(ewkb) <> blob END
     UNION ALL SELECT 'another solid', name FROM documents WHERE wt_decode(blob) <> ewkb
+    UNION ALL SELECT 'another value', name FROM documents
+      WHERE wt_try_solid(ewkb)::bytea IS DISTINCT FROM blob
+    UNION ALL SELECT 'another value of a blob', name FROM documents
+      WHERE blob IS NOT NULL AND wt_solid(blob)::bytea <> blob
+    UNION ALL SELECT 'another measure', name FROM documents,
+      LATERAL (SELECT wt_solid(blob) AS shape, wt_validate(ewkb)->'measures' AS measures) AS m
+      WHERE blob IS NOT NULL AND (wt_volume(shape) <> (measures->>'volume')::float8 OR wt_area(shape) <> (measures->>'area')::float8
+        OR wt_facet_count(shape) <> (measures->>'facets')::int OR wt_genus(shape) <> (measures->>'genus')::int
+        OR abs(wt_area(shape) - (SELECT sum(area) FROM wt_faces(shape))) > 1e-9 * wt_area(shape))
     UNION ALL SELECT 'another golden', name FROM goldens g LEFT JOIN documents d USING (name)
       WHERE d.ewkb IS DISTINCT FROM wt_decode(g.blob)")
   [ -z "$different" ] || { echo "SQL and library differ:"; echo "$different"; exit 1; }

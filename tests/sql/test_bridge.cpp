@@ -123,7 +123,8 @@ TEST_CASE("the bridge separates valid from invalid and names the findings") {
 TEST_CASE("the bridge fails on bytes that are no solid, with the offset") {
   for (const Function function :
        {wt_bridge_validate, wt_bridge_is_valid, wt_bridge_encode, wt_bridge_decode, wt_bridge_info,
-        wt_bridge_rules_of, wt_bridge_blob}) {
+        wt_bridge_rules_of, wt_bridge_blob, wt_bridge_solid, wt_bridge_solid_of_wkt, wt_bridge_wkt,
+        wt_bridge_faces}) {
     CHECK(!call(function, {}).state().empty());
     CHECK(!call(function, as_bytes("garbage")).state().empty());
     const Reply truncated = call(function, ByteView(cube()).first(20));

@@ -1,0 +1,291 @@
+-- SPDX-License-Identifier: GPL-3.0-or-later
+-- The type solid, which holds valid solids only, the type wt_box, and an index on boxes.
+-- Costs are as in version 0.1.0: a tenth of what is measured, in units of 0.1 microseconds.
+\echo Use "ALTER EXTENSION watertight UPDATE" to load this file. \quit
+
+CREATE TYPE solid;
+CREATE FUNCTION wt_solid_in(cstring) RETURNS solid
+  AS 'MODULE_PATHNAME', 'wt_solid_in' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+CREATE FUNCTION wt_solid_out(solid) RETURNS cstring
+  AS 'MODULE_PATHNAME', 'wt_solid_out' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 2;
+CREATE FUNCTION wt_solid_recv(internal) RETURNS solid
+  AS 'MODULE_PATHNAME', 'wt_solid_recv' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+CREATE FUNCTION wt_solid_send(solid) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_solid_blob' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 2;
+-- Blobs are compressed already, so values that are too long for a row are moved out as they are.
+CREATE TYPE solid (INPUT = wt_solid_in, OUTPUT = wt_solid_out, RECEIVE = wt_solid_recv, SEND = wt_solid_send,
+  INTERNALLENGTH = variable, ALIGNMENT = int4, STORAGE = external);
+COMMENT ON TYPE solid IS
+  'a valid closed solid: text is its blob in hexadecimal digits; reads blobs, EWKB and WKT, and refuses what is invalid';
+COMMENT ON FUNCTION wt_solid_in(cstring) IS 'solid of a blob or EWKB in hexadecimal digits, or of WKT';
+COMMENT ON FUNCTION wt_solid_out(solid) IS 'blob of a solid in hexadecimal digits';
+COMMENT ON FUNCTION wt_solid_recv(internal) IS 'solid of a blob or EWKB';
+COMMENT ON FUNCTION wt_solid_send(solid) IS 'blob of a solid';
+
+CREATE TYPE wt_box;
+CREATE FUNCTION wt_box_in(cstring) RETURNS wt_box
+  AS 'MODULE_PATHNAME', 'wt_box_in' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_out(wt_box) RETURNS cstring
+  AS 'MODULE_PATHNAME', 'wt_box_out' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_recv(internal) RETURNS wt_box
+  AS 'MODULE_PATHNAME', 'wt_box_recv' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_send(wt_box) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_box_send' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE TYPE wt_box (INPUT = wt_box_in, OUTPUT = wt_box_out, RECEIVE = wt_box_recv, SEND = wt_box_send,
+  INTERNALLENGTH = 48, ALIGNMENT = double);
+COMMENT ON TYPE wt_box IS 'a closed box, as PostGIS writes one: BOX3D(x y z,x y z)';
+COMMENT ON FUNCTION wt_box_in(cstring) IS 'box of BOX3D(x y z,x y z)';
+COMMENT ON FUNCTION wt_box_out(wt_box) IS 'text of a box';
+COMMENT ON FUNCTION wt_box_recv(internal) IS 'box of six numbers';
+COMMENT ON FUNCTION wt_box_send(wt_box) IS 'a box as six numbers';
+CREATE FUNCTION wt_box(min_x float8, min_y float8, min_z float8, max_x float8, max_y float8, max_z float8) RETURNS wt_box
+  AS 'MODULE_PATHNAME', 'wt_box_make' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box(float8, float8, float8, float8, float8, float8) IS 'box between two corners';
+CREATE FUNCTION wt_bound(box wt_box, number integer) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_bound' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_bound(wt_box, integer) IS
+  'bound of a box by its number: 1, 2, 3 are the least x, y, z, and 4, 5, 6 the largest';
+
+-- Solids of other values, and back.
+CREATE FUNCTION wt_solid(bytes bytea) RETURNS solid
+  AS 'MODULE_PATHNAME', 'wt_solid_of_bytes' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_solid(bytea) IS
+  'solid of EWKB (POLYHEDRALSURFACE Z or SOLID Z) by the default rules, or of a blob by the rules that it states; an invalid one is an error with its findings';
+CREATE FUNCTION wt_solid(bytes bytea, rules jsonb) RETURNS solid
+  AS 'MODULE_PATHNAME', 'wt_solid_of_bytes' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_solid(bytea, jsonb) IS
+  'solid of EWKB by these rules, which the value keeps; those that are not stated are the default ones';
+CREATE FUNCTION wt_try_solid(bytes bytea) RETURNS solid
+  AS 'MODULE_PATHNAME', 'wt_try_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_try_solid(bytea) IS
+  'wt_solid, but NULL for an invalid solid; bytes that cannot be read, and undecided solids, are errors';
+CREATE FUNCTION wt_try_solid(bytes bytea, rules jsonb) RETURNS solid
+  AS 'MODULE_PATHNAME', 'wt_try_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_try_solid(bytea, jsonb) IS
+  'wt_solid by these rules, but NULL for an invalid solid; bytes that cannot be read, and undecided solids, are errors';
+CREATE FUNCTION wt_blob_of(solid solid) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_solid_blob' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_blob_of(solid) IS 'blob of a solid';
+CREATE FUNCTION wt_as_ewkb(solid solid) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_solid_ewkb' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 50;
+COMMENT ON FUNCTION wt_as_ewkb(solid) IS
+  'EWKB of a solid: POLYHEDRALSURFACE Z, or SOLID Z when it has cavities; PostGIS reads the former';
+CREATE FUNCTION wt_as_text(solid solid) RETURNS text
+  AS 'MODULE_PATHNAME', 'wt_solid_wkt' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 50;
+COMMENT ON FUNCTION wt_as_text(solid) IS 'WKT of a solid: POLYHEDRALSURFACE Z, or SOLID Z when it has cavities';
+CREATE FUNCTION wt_solid_info(solid solid) RETURNS jsonb
+  AS 'MODULE_PATHNAME', 'wt_solid_info' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_solid_info(solid) IS 'header, counts and sizes of the parts of the blob of a solid';
+CREATE FUNCTION wt_solid_rules(solid solid) RETURNS jsonb
+  AS 'MODULE_PATHNAME', 'wt_solid_rules' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_solid_rules(solid) IS 'the rules under which a solid was accepted, as its value states them';
+CREATE CAST (bytea AS solid) WITH FUNCTION wt_solid(bytea);
+CREATE CAST (solid AS bytea) WITH FUNCTION wt_blob_of(solid);
+CREATE CAST (solid AS jsonb) WITH FUNCTION wt_solid_info(solid);
+
+-- Measures. The first four stand in the value; the others take its coordinates.
+CREATE FUNCTION wt_volume(solid solid) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_solid_volume' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_volume(solid) IS
+  'volume in cubic units of the reference system: the exact value, rounded once';
+CREATE FUNCTION wt_area(solid solid) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_solid_area' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_area(solid) IS 'area of all facets in square units of the reference system';
+CREATE FUNCTION wt_srid(solid solid) RETURNS integer
+  AS 'MODULE_PATHNAME', 'wt_solid_srid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_srid(solid) IS 'EPSG code of the reference system; 0: not stated';
+CREATE FUNCTION wt_box(solid solid) RETURNS wt_box
+  AS 'MODULE_PATHNAME', 'wt_solid_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box(solid) IS
+  'box of a solid, rounded outward to single precision, by which the operators and the index go';
+CREATE FUNCTION wt_bbox(solid solid) RETURNS wt_box
+  AS 'MODULE_PATHNAME', 'wt_solid_bbox' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_bbox(solid) IS 'box of the vertices of a solid';
+CREATE FUNCTION wt_vertex_count(solid solid) RETURNS integer
+  AS 'MODULE_PATHNAME', 'wt_solid_vertex_count' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_vertex_count(solid) IS 'number of vertices';
+CREATE FUNCTION wt_facet_count(solid solid) RETURNS integer
+  AS 'MODULE_PATHNAME', 'wt_solid_facet_count' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_facet_count(solid) IS 'number of facets';
+CREATE FUNCTION wt_shell_count(solid solid) RETURNS integer
+  AS 'MODULE_PATHNAME', 'wt_solid_shell_count' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_shell_count(solid) IS 'number of shells: one more than there are cavities';
+CREATE FUNCTION wt_genus(solid solid) RETURNS bigint
+  AS 'MODULE_PATHNAME', 'wt_solid_genus' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_genus(solid) IS 'number of tunnels of all shells together';
+
+CREATE FUNCTION wt_faces(solid solid, OUT shell integer, OUT facet integer, OUT area float8, OUT normal float8[],
+    OUT tilt float8, OUT azimuth float8, OUT centroid float8[], OUT planarity float8, OUT rings integer)
+  RETURNS SETOF record
+  AS 'MODULE_PATHNAME', 'wt_solid_faces' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 200 ROWS 20;
+COMMENT ON FUNCTION wt_faces(solid) IS
+  'facets of a solid, counted from 0: area, normal, tilt (degrees: 0 a flat roof, 90 a wall), azimuth (clockwise from north, NULL without), centroid, planarity (largest distance of a corner from the fitted plane), rings';
+
+-- The findings of a report as rows. The bodies are parsed here, so that they work in any schema and under
+-- any search path.
+CREATE FUNCTION wt_findings(ewkb bytea, OUT code integer, OUT name text, OUT severity text, OUT shell integer,
+    OUT facet integer, OUT other_facet integer, OUT witness float8[], OUT measured float8, OUT "limit" float8,
+    OUT unit text, OUT message text)
+  RETURNS SETOF record LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 10000 ROWS 3
+BEGIN ATOMIC
+  SELECT (f->>'code')::integer, f->>'name', f->>'severity', (f->'place'->>'shell')::integer,
+    (f->'place'->>'facet')::integer, (f->'other'->>'facet')::integer,
+    CASE WHEN f ? 'witness' THEN ARRAY[(f->'witness'->>0)::float8, (f->'witness'->>1)::float8, (f->'witness'->>2)::float8] END,
+    (f->>'measured')::float8, (f->>'limit')::float8, f->>'unit', f->>'text'
+  FROM wt_validate(wt_findings.ewkb) AS report,
+    LATERAL jsonb_array_elements((report->'errors') || (report->'warnings')) AS f;
+END;
+COMMENT ON FUNCTION wt_findings(bytea) IS
+  'findings about a solid (EWKB) as rows, errors first; facets count from 0, the witness is a place';
+CREATE FUNCTION wt_findings(ewkb bytea, rules jsonb, OUT code integer, OUT name text, OUT severity text, OUT shell integer,
+    OUT facet integer, OUT other_facet integer, OUT witness float8[], OUT measured float8, OUT "limit" float8,
+    OUT unit text, OUT message text)
+  RETURNS SETOF record LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 10000 ROWS 3
+BEGIN ATOMIC
+  SELECT (f->>'code')::integer, f->>'name', f->>'severity', (f->'place'->>'shell')::integer,
+    (f->'place'->>'facet')::integer, (f->'other'->>'facet')::integer,
+    CASE WHEN f ? 'witness' THEN ARRAY[(f->'witness'->>0)::float8, (f->'witness'->>1)::float8, (f->'witness'->>2)::float8] END,
+    (f->>'measured')::float8, (f->>'limit')::float8, f->>'unit', f->>'text'
+  FROM wt_validate(wt_findings.ewkb, wt_findings.rules) AS report,
+    LATERAL jsonb_array_elements((report->'errors') || (report->'warnings')) AS f;
+END;
+COMMENT ON FUNCTION wt_findings(bytea, jsonb) IS
+  'findings about a solid (EWKB) by these rules as rows, errors first; facets count from 0, the witness is a place';
+
+-- Order and equality, by canonical forms.
+CREATE FUNCTION wt_solid_lt(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_lt' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_solid_le(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_le' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_solid_eq(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_eq' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_solid_ne(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_ne' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_solid_ge(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_ge' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_solid_gt(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_gt' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_solid_cmp(solid, solid) RETURNS integer
+  AS 'MODULE_PATHNAME', 'wt_solid_cmp' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_solid_hash(solid) RETURNS integer
+  AS 'MODULE_PATHNAME', 'wt_solid_hash' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_solid_hash_extended(solid, bigint) RETURNS bigint
+  AS 'MODULE_PATHNAME', 'wt_solid_hash_extended' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_solid_lt(solid, solid) IS 'implementation of the operator <';
+COMMENT ON FUNCTION wt_solid_le(solid, solid) IS 'implementation of the operator <=';
+COMMENT ON FUNCTION wt_solid_eq(solid, solid) IS 'implementation of the operator =';
+COMMENT ON FUNCTION wt_solid_ne(solid, solid) IS 'implementation of the operator <>';
+COMMENT ON FUNCTION wt_solid_ge(solid, solid) IS 'implementation of the operator >=';
+COMMENT ON FUNCTION wt_solid_gt(solid, solid) IS 'implementation of the operator >';
+COMMENT ON FUNCTION wt_solid_cmp(solid, solid) IS 'below, at or above 0, for indexes';
+COMMENT ON FUNCTION wt_solid_hash(solid) IS 'hash of the canonical form, for indexes';
+COMMENT ON FUNCTION wt_solid_hash_extended(solid, bigint) IS 'hash of the canonical form and a number, for indexes';
+CREATE OPERATOR < (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_solid_lt, COMMUTATOR = >, NEGATOR = >=,
+  RESTRICT = scalarltsel, JOIN = scalarltjoinsel);
+CREATE OPERATOR <= (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_solid_le, COMMUTATOR = >=, NEGATOR = >,
+  RESTRICT = scalarlesel, JOIN = scalarlejoinsel);
+CREATE OPERATOR = (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_solid_eq, COMMUTATOR = =, NEGATOR = <>,
+  RESTRICT = eqsel, JOIN = eqjoinsel, HASHES, MERGES);
+CREATE OPERATOR <> (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_solid_ne, COMMUTATOR = <>, NEGATOR = =,
+  RESTRICT = neqsel, JOIN = neqjoinsel);
+CREATE OPERATOR >= (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_solid_ge, COMMUTATOR = <=, NEGATOR = <,
+  RESTRICT = scalargesel, JOIN = scalargejoinsel);
+CREATE OPERATOR > (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_solid_gt, COMMUTATOR = <, NEGATOR = <=,
+  RESTRICT = scalargtsel, JOIN = scalargtjoinsel);
+CREATE OPERATOR CLASS solid_ops DEFAULT FOR TYPE solid USING btree AS
+  OPERATOR 1 <, OPERATOR 2 <=, OPERATOR 3 =, OPERATOR 4 >=, OPERATOR 5 >, FUNCTION 1 wt_solid_cmp(solid, solid);
+CREATE OPERATOR CLASS solid_hash_ops DEFAULT FOR TYPE solid USING hash AS
+  OPERATOR 1 =, FUNCTION 1 wt_solid_hash(solid), FUNCTION 2 wt_solid_hash_extended(solid, bigint);
+
+-- Boxes of solids.
+CREATE FUNCTION wt_boxes_overlap(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_overlaps_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_boxes_overlap(solid, wt_box) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_overlaps_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_contains(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_contains_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_contains(solid, wt_box) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_contains_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_within(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_within_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_within(solid, wt_box) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_within_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_distance(solid, solid) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_solid_box_distance_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_distance(solid, wt_box) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_solid_box_distance_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_boxes_overlap(solid, solid) IS 'implementation of the operator &&';
+COMMENT ON FUNCTION wt_boxes_overlap(solid, wt_box) IS 'implementation of the operator &&';
+COMMENT ON FUNCTION wt_box_contains(solid, solid) IS 'implementation of the operator @>';
+COMMENT ON FUNCTION wt_box_contains(solid, wt_box) IS 'implementation of the operator @>';
+COMMENT ON FUNCTION wt_box_within(solid, solid) IS 'implementation of the operator <@';
+COMMENT ON FUNCTION wt_box_within(solid, wt_box) IS 'implementation of the operator <@';
+COMMENT ON FUNCTION wt_box_distance(solid, solid) IS 'implementation of the operator <->';
+COMMENT ON FUNCTION wt_box_distance(solid, wt_box) IS 'implementation of the operator <->';
+CREATE OPERATOR && (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_boxes_overlap, COMMUTATOR = &&,
+  RESTRICT = areasel, JOIN = areajoinsel);
+CREATE OPERATOR && (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_boxes_overlap,
+  RESTRICT = areasel, JOIN = areajoinsel);
+CREATE OPERATOR @> (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_contains, COMMUTATOR = <@,
+  RESTRICT = contsel, JOIN = contjoinsel);
+CREATE OPERATOR @> (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_contains,
+  RESTRICT = contsel, JOIN = contjoinsel);
+CREATE OPERATOR <@ (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_within, COMMUTATOR = @>,
+  RESTRICT = contsel, JOIN = contjoinsel);
+CREATE OPERATOR <@ (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_within,
+  RESTRICT = contsel, JOIN = contjoinsel);
+CREATE OPERATOR <-> (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_distance, COMMUTATOR = <->);
+CREATE OPERATOR <-> (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_distance);
+COMMENT ON OPERATOR && (solid, solid) IS 'the boxes have a point in common';
+COMMENT ON OPERATOR && (solid, wt_box) IS 'the boxes have a point in common';
+COMMENT ON OPERATOR @> (solid, solid) IS 'the left box contains the right one';
+COMMENT ON OPERATOR @> (solid, wt_box) IS 'the left box contains the right one';
+COMMENT ON OPERATOR <@ (solid, solid) IS 'the left box is within the right one';
+COMMENT ON OPERATOR <@ (solid, wt_box) IS 'the left box is within the right one';
+COMMENT ON OPERATOR <-> (solid, solid) IS 'distance of the boxes';
+COMMENT ON OPERATOR <-> (solid, wt_box) IS 'distance of the boxes';
+
+CREATE FUNCTION wt_gist_consistent(internal, solid, smallint, oid, internal) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_gist_consistent' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_gist_union(internal, internal) RETURNS wt_box
+  AS 'MODULE_PATHNAME', 'wt_gist_union' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_gist_compress(internal) RETURNS internal
+  AS 'MODULE_PATHNAME', 'wt_gist_compress' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_gist_penalty(internal, internal, internal) RETURNS internal
+  AS 'MODULE_PATHNAME', 'wt_gist_penalty' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_gist_picksplit(internal, internal) RETURNS internal
+  AS 'MODULE_PATHNAME', 'wt_gist_picksplit' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_gist_same(wt_box, wt_box, internal) RETURNS internal
+  AS 'MODULE_PATHNAME', 'wt_gist_same' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_gist_distance(internal, solid, smallint, oid, internal) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_gist_distance' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_gist_consistent(internal, solid, smallint, oid, internal) IS 'for the index on boxes';
+COMMENT ON FUNCTION wt_gist_union(internal, internal) IS 'for the index on boxes';
+COMMENT ON FUNCTION wt_gist_compress(internal) IS 'for the index on boxes';
+COMMENT ON FUNCTION wt_gist_penalty(internal, internal, internal) IS 'for the index on boxes';
+COMMENT ON FUNCTION wt_gist_picksplit(internal, internal) IS 'for the index on boxes';
+COMMENT ON FUNCTION wt_gist_same(wt_box, wt_box, internal) IS 'for the index on boxes';
+COMMENT ON FUNCTION wt_gist_distance(internal, solid, smallint, oid, internal) IS 'for the index on boxes';
+-- A number of an operator with a box on its right is 20 more than that with a solid (sql/box_index.c).
+CREATE OPERATOR CLASS solid_box_ops DEFAULT FOR TYPE solid USING gist AS
+  OPERATOR 3 && (solid, solid), OPERATOR 23 && (solid, wt_box),
+  OPERATOR 7 @> (solid, solid), OPERATOR 27 @> (solid, wt_box),
+  OPERATOR 8 <@ (solid, solid), OPERATOR 28 <@ (solid, wt_box),
+  OPERATOR 15 <-> (solid, solid) FOR ORDER BY float_ops, OPERATOR 35 <-> (solid, wt_box) FOR ORDER BY float_ops,
+  FUNCTION 1 wt_gist_consistent(internal, solid, smallint, oid, internal),
+  FUNCTION 2 wt_gist_union(internal, internal),
+  FUNCTION 3 wt_gist_compress(internal),
+  FUNCTION 5 wt_gist_penalty(internal, internal, internal),
+  FUNCTION 6 wt_gist_picksplit(internal, internal),
+  FUNCTION 7 wt_gist_same(wt_box, wt_box, internal),
+  FUNCTION 8 wt_gist_distance(internal, solid, smallint, oid, internal),
+  STORAGE wt_box;
+
+CREATE FUNCTION wt_box_extend(wt_box, solid) RETURNS wt_box
+  AS 'MODULE_PATHNAME', 'wt_box_extend' LANGUAGE C IMMUTABLE PARALLEL SAFE;
+CREATE FUNCTION wt_box_union(wt_box, wt_box) RETURNS wt_box
+  AS 'MODULE_PATHNAME', 'wt_box_union' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box_extend(wt_box, solid) IS 'box around a box and that of a solid, for wt_extent';
+COMMENT ON FUNCTION wt_box_union(wt_box, wt_box) IS 'box around two boxes';
+CREATE AGGREGATE wt_extent(solid) (SFUNC = wt_box_extend, STYPE = wt_box, COMBINEFUNC = wt_box_union, PARALLEL = safe);
+COMMENT ON AGGREGATE wt_extent(solid) IS 'box around the boxes of solids';

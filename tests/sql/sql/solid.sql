@@ -1,0 +1,93 @@
+-- The type solid: it holds valid solids only.
+CREATE TABLE town (name text PRIMARY KEY, shape solid);
+INSERT INTO town SELECT name, wt_solid(ewkb) FROM solids WHERE wt_is_valid(ewkb);
+SELECT name, wt_volume(shape) AS volume, round(wt_area(shape)::numeric, 6) AS area, wt_srid(shape) AS srid, wt_bbox(shape) AS bbox,
+       wt_vertex_count(shape) AS vertices, wt_facet_count(shape) AS facets, wt_shell_count(shape) AS shells, wt_genus(shape) AS genus
+FROM town ORDER BY name;
+
+-- Text is the blob; text, bytes and WKT lead back to the same solid.
+SELECT name, shape::text = encode(wt_encode(ewkb), 'hex') AS blob,
+       shape::text::solid = shape AS by_text, shape::bytea::solid = shape AS by_bytes,
+       wt_solid(wt_as_ewkb(shape)) = shape AS by_ewkb, wt_as_text(shape)::solid = shape AS by_wkt,
+       encode(ewkb, 'hex')::solid = shape AS by_hex_ewkb, wt_as_ewkb(shape) = ewkb AS same_ewkb,
+       shape::bytea = wt_blob_of(shape) AS bytes, shape::jsonb = wt_info(shape::bytea) AS info,
+       wt_solid_rules(shape) = wt_rules_of(shape::bytea) AS rules
+FROM town JOIN solids USING (name) ORDER BY name;
+
+-- Rules stay with the value, and come back with it.
+SELECT wt_solid_rules(warped)->>'planarity' AS planarity, wt_solid_rules(warped::text::solid)->>'planarity' AS again
+FROM (SELECT wt_solid(ewkb, '{"planarity": 0.5, "proof": "boundary"}') AS warped FROM solids WHERE name = 'cube') AS one;
+
+-- An invalid solid has no value. The errors say what is wrong and where.
+INSERT INTO town SELECT 'open', ewkb::solid FROM solids WHERE name = 'open';
+SELECT 'POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 1 0,1 0 0,0 0 0)))'::solid;
+\set VERBOSITY sqlstate
+SELECT ewkb::solid FROM solids WHERE name = 'open';
+SELECT '5754'::solid;
+\set VERBOSITY default
+SELECT wt_try_solid(ewkb) IS NULL AS is_null FROM solids WHERE name = 'open';
+SELECT wt_try_solid(ewkb, '{"planarity": 0.5}') IS NULL AS is_null FROM solids WHERE name IN ('open', 'cube') ORDER BY name;
+SELECT wt_try_solid(NULL) IS NULL AND wt_solid(NULL) IS NULL AND wt_volume(NULL) IS NULL AS is_null;
+SELECT ''::solid;
+SELECT '5754'::solid;
+SELECT '575401'::solid;
+SELECT 'POINT Z (1 2 3)'::solid;
+SELECT 'POLYHEDRALSURFACE Z (((nan 0 0,0 1 0,1 1 0,1 0 0,nan 0 0)))'::solid;
+SELECT 'POLYHEDRALSURFACE Z (((0 0 0,0 1 0'::solid;
+SELECT '\x57540101'::bytea::solid;
+SELECT (overlay(shape::bytea placing '\xff'::bytea from 12))::solid FROM town WHERE name = 'cube';
+SELECT (substring(shape::bytea from 1 for 20))::solid FROM town WHERE name = 'cube';
+SELECT wt_solid(ewkb, '{"colour": 1}') FROM solids WHERE name = 'cube';
+SELECT wt_try_solid('\x00');
+UPDATE town SET shape = 'POLYHEDRALSURFACE Z EMPTY' WHERE name = 'cube';
+
+-- What is invalid stands beside, with its findings.
+CREATE TABLE refused AS
+  SELECT s.name AS solid, f.* FROM solids s, LATERAL wt_findings(s.ewkb) f WHERE wt_try_solid(s.ewkb) IS NULL;
+SELECT solid, code, severity, shell, facet, other_facet, witness, measured, "limit", unit, message FROM refused ORDER BY solid, code, facet LIMIT 4;
+SELECT code, severity FROM solids AS s, LATERAL wt_findings(ewkb, '{"planarity": 0.5}') WHERE s.name = 'open' ORDER BY code;
+
+-- Equality, order and hash go by the solid, not by where its rings begin.
+CREATE TABLE turned (shape solid);
+INSERT INTO turned VALUES
+  ('POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)),((0 0 0,1 0 0,0 0 1,0 0 0)),((0 0 0,0 0 1,0 1 0,0 0 0)),((1 0 0,0 1 0,0 0 1,1 0 0)))'),
+  ('POLYHEDRALSURFACE Z (((0 1 0,0 0 1,1 0 0,0 1 0)),((1 0 0,0 0 0,0 1 0,1 0 0)),((1 0 0,0 0 1,0 0 0,1 0 0)),((0 0 1,0 1 0,0 0 0,0 0 1)))'),
+  ('SRID=28992;POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)),((0 0 0,1 0 0,0 0 1,0 0 0)),((0 0 0,0 0 1,0 1 0,0 0 0)),((1 0 0,0 1 0,0 0 1,1 0 0)))');
+SELECT count(*), count(DISTINCT shape), count(DISTINCT shape::text) AS texts FROM turned;
+SELECT count(*) FROM turned a JOIN turned b ON a.shape = b.shape;
+SELECT bool_and((a.shape < b.shape)::int + (a.shape = b.shape)::int + (a.shape > b.shape)::int = 1
+                AND (a.shape <= b.shape) = NOT (a.shape > b.shape) AND (a.shape >= b.shape) = NOT (a.shape < b.shape)
+                AND (a.shape <> b.shape) = NOT (a.shape = b.shape)) AS is_order
+FROM (SELECT shape FROM town UNION ALL SELECT shape FROM turned) a, (SELECT shape FROM town UNION ALL SELECT shape FROM turned) b;
+CREATE UNIQUE INDEX one_solid ON town (shape);
+INSERT INTO town SELECT 'again', shape FROM town WHERE name = 'cube';
+SET enable_hashagg = off;
+SELECT count(*) FROM (SELECT shape FROM turned GROUP BY shape) g;
+RESET enable_hashagg;
+
+-- Binary transfer.
+CREATE TABLE copied (LIKE town);
+\copy town TO 'town.binary' (FORMAT binary)
+\copy copied FROM 'town.binary' (FORMAT binary)
+SELECT count(*) FROM copied JOIN town USING (name) WHERE copied.shape = town.shape AND copied.shape::text = town.shape::text;
+SELECT (SELECT count(*) FROM copied) = (SELECT count(*) FROM town) AS complete;
+\! rm town.binary
+DROP TABLE copied;
+
+-- Boxes.
+SELECT 'BOX3D(1 2 3,4 5 6)'::wt_box, '( 1 2 3 , 4 5 6 )'::wt_box, wt_box(0, 0, 0, 1, 1, 1), wt_bound(wt_box(1, 2, 3, 4, 5, 6), 5);
+SELECT 'BOX3D(1 2 3,4 5)'::wt_box;
+SELECT 'BOX3D(1 2 3,0 5 6)'::wt_box;
+SELECT 'BOX3D(1 2 nan,4 5 6)'::wt_box;
+SELECT 'BOX3D(1 2 3,4 5 6) and more'::wt_box;
+SELECT wt_box(0, 0, 'infinity', 1, 1, 1);
+SELECT wt_bound(wt_box(1, 2, 3, 4, 5, 6), 7);
+SELECT wt_extent(shape), wt_extent(shape) FILTER (WHERE false) FROM turned;
+SELECT a.name, a.shape && b.shape AS overlaps, a.shape @> b.shape AS contains, a.shape <@ b.shape AS within, a.shape <-> b.shape AS distance
+FROM town a, town b WHERE b.name = 'cube' AND a.name IN ('cube', 'hollow', 'pierced') ORDER BY a.name;
+
+-- Facets.
+SELECT facet, rings, round(area::numeric, 6) AS area, normal, tilt, azimuth, centroid, planarity FROM wt_faces((SELECT shape FROM town WHERE name = 'pierced')) ORDER BY facet;
+SELECT name, round((sum(area) - wt_area(shape))::numeric, 9) AS difference, count(*) = wt_facet_count(shape) AS complete FROM town, wt_faces(shape) GROUP BY name, shape ORDER BY name;
+SELECT round(tilt::numeric, 3) AS tilt, round(azimuth::numeric, 3) AS azimuth FROM wt_faces('POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)),((0 0 0,1 0 0,0 0 1,0 0 0)),((0 0 0,0 0 1,0 1 0,0 0 0)),((1 0 0,0 1 0,0 0 1,1 0 0)))') ORDER BY facet;
+SELECT count(*) FROM wt_faces(NULL);

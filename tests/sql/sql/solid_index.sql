@@ -1,0 +1,50 @@
+-- An index on boxes gives what a look at every row gives.
+CREATE TABLE field AS
+  SELECT i, format('POLYHEDRALSURFACE Z (((%1$s %2$s 0,%1$s %4$s 0,%3$s %2$s 0,%1$s %2$s 0)),((%1$s %2$s 0,%3$s %2$s 0,%1$s %2$s %5$s,%1$s %2$s 0)),((%1$s %2$s 0,%1$s %2$s %5$s,%1$s %4$s 0,%1$s %2$s 0)),((%3$s %2$s 0,%1$s %4$s 0,%1$s %2$s %5$s,%3$s %2$s 0)))',
+    x, y, x + 1 + i % 7, y + 1 + i % 5, 1 + i % 11)::solid AS shape
+  FROM (SELECT i, (i * 7919) % 1000 AS x, (i * 104729) % 997 AS y FROM generate_series(1, 3000) AS i) AS places;
+CREATE INDEX field_box ON field USING gist (shape);
+ANALYZE field;
+CREATE TABLE windows AS SELECT i, wt_box(i * 30, i * 20, -1, i * 30 + 60, i * 20 + 90, i % 9) AS box FROM generate_series(0, 30) AS i;
+CREATE FUNCTION answers() RETURNS TABLE (question text, answer text) LANGUAGE sql AS $$
+  SELECT '&&', md5(string_agg(format('%s %s', w.i, f.i), ',' ORDER BY w.i, f.i)) FROM windows w JOIN field f ON f.shape && w.box
+  UNION ALL SELECT '@>', md5(string_agg(format('%s %s', w.i, f.i), ',' ORDER BY w.i, f.i)) FROM windows w JOIN field f ON f.shape @> wt_box(wt_bound(w.box, 1), wt_bound(w.box, 2), 0, wt_bound(w.box, 1), wt_bound(w.box, 2), 0)
+  UNION ALL SELECT '<@', md5(string_agg(format('%s %s', w.i, f.i), ',' ORDER BY w.i, f.i)) FROM windows w JOIN field f ON f.shape <@ w.box
+  UNION ALL SELECT 'solids &&', md5(string_agg(format('%s %s', a.i, b.i), ',' ORDER BY a.i, b.i)) FROM field a JOIN field b ON a.shape && b.shape WHERE a.i < 300
+  UNION ALL SELECT 'solids <@', md5(string_agg(format('%s %s', a.i, b.i), ',' ORDER BY a.i, b.i)) FROM field a JOIN field b ON a.shape <@ b.shape WHERE a.i < 300
+  UNION ALL SELECT '<->', md5(string_agg(d::text, ',' ORDER BY w.i, d)) FROM windows w, LATERAL (SELECT f.shape <-> w.box AS d FROM field f ORDER BY f.shape <-> w.box LIMIT 20) AS near
+$$;
+SET enable_seqscan = off;
+EXPLAIN (COSTS OFF) SELECT i FROM field WHERE shape && 'BOX3D(0 0 0,50 50 5)'::wt_box;
+EXPLAIN (COSTS OFF) SELECT i FROM field ORDER BY shape <-> 'BOX3D(0 0 0,50 50 5)'::wt_box LIMIT 5;
+CREATE TABLE by_index AS SELECT * FROM answers();
+RESET enable_seqscan;
+SET enable_indexscan = off;
+SET enable_bitmapscan = off;
+SELECT question, answer IS NOT NULL AND answer = (SELECT answer FROM by_index b WHERE b.question = a.question) AS same FROM answers() a;
+RESET enable_indexscan;
+RESET enable_bitmapscan;
+-- Rows that come and go.
+DELETE FROM field WHERE i % 3 = 0;
+INSERT INTO field SELECT i + 10000, shape FROM field WHERE i % 5 = 0;
+UPDATE field SET shape = (SELECT shape FROM field WHERE i = 1) WHERE i BETWEEN 100 AND 130;
+VACUUM field;
+TRUNCATE by_index;
+SET enable_seqscan = off;
+INSERT INTO by_index SELECT * FROM answers();
+RESET enable_seqscan;
+SET enable_indexscan = off;
+SET enable_bitmapscan = off;
+SELECT question, answer IS NOT NULL AND answer = (SELECT answer FROM by_index b WHERE b.question = a.question) AS same FROM answers() a;
+RESET enable_indexscan;
+RESET enable_bitmapscan;
+-- Values that lie outside of the row are read in part.
+SELECT attstorage, atttypid::regtype FROM pg_attribute WHERE attrelid = 'field'::regclass AND attname = 'shape';
+-- In a parallel plan.
+ALTER TABLE field SET (parallel_workers = 2);
+SET parallel_setup_cost = 0;
+SET parallel_tuple_cost = 0;
+SET min_parallel_table_scan_size = 0;
+EXPLAIN (COSTS OFF) SELECT count(*), sum(wt_volume(shape)), wt_extent(shape) FROM field;
+SELECT count(*), sum(wt_volume(shape)) > 0 AS volume, wt_extent(shape) FROM field;
+DROP TABLE field CASCADE;

@@ -3,8 +3,9 @@
 """Uploads files to a running service as jobs: jobs.py WATERTIGHT EXAMPLES [--rounds N] [--seed S]
 
 Files of every kind are stored as `watertight ingest` stores them; clients follow a job, end it, and ask twice with
-one key. Then, in N rounds, the service or its database is killed while jobs are uploaded and run: each job that
-was accepted is successful in the end, with each of its features once. Exit code 1 after a difference.
+one key. Then, in N rounds, the service, its database or the helper processes that prove hard solids are killed while
+jobs are uploaded and run: each job that was accepted is successful in the end, with each of its features once. Exit
+code 1 after a difference.
 """
 import argparse
 import gzip
@@ -23,7 +24,8 @@ import zipfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../siege"))
 from checks import check, failures  # noqa: E402
-from service import Service, box_document, temporary_folder  # noqa: E402
+from service import Service, box_document, sequence, temporary_folder  # noqa: E402
+from hard_solid import hard_feature  # noqa: E402
 
 OCTETS = {"Content-Type": "application/octet-stream"}
 OVER = ("successful", "failed", "dismissed")
@@ -209,10 +211,13 @@ class Uploader(threading.Thread):
         while not self.is_over.is_set():
             count += 1
             name = f"u{self.number}-{count}"
-            body = archive({f"{part}.city.jsonl": box_document(60, f"{name}-{part}-") for part in range(3)})
+            members = {f"{part}.city.jsonl": box_document(60, f"{name}-{part}-") for part in range(3)}
+            members["hard.city.jsonl"] = sequence([hard_feature(f"{name}-hard")])
+            body = archive(members)
 
             def upload():
-                status, made = start_job(self.service, body, {"Idempotency-Key": name}, collection="siege", name=name)
+                status, made = start_job(self.service, body, {"Idempotency-Key": name}, collection="siege", name=name,
+                                         invalid="keep")
                 return made["jobID"] if status in (200, 201) else None
 
             def end_of(job):
@@ -223,21 +228,43 @@ class Uploader(threading.Thread):
             self.states[name] = (job, self.persistently(lambda: end_of(job)) if job else None)
 
 
+def kill_helpers(service):
+    """Kills the helper processes of a service, as soon as there is one; how many there were."""
+    end = time.monotonic() + 10
+    while time.monotonic() < end:
+        killed = 0
+        for status in pathlib.Path("/proc").glob("[0-9]*/stat"):
+            try:
+                name, _, rest = status.read_text().partition("(")[2].rpartition(")")
+                if name.startswith("watertight-work") and int(rest.split()[1]) == service.process.pid:
+                    os.kill(int(status.parent.name), signal.SIGKILL)
+                    killed += 1
+            except (OSError, ValueError):
+                pass  # it has ended
+        if killed:
+            return killed
+        time.sleep(0.01)
+    return 0
+
+
 def check_kills(service, rounds, seed):
     chance = random.Random(seed)
     uploaders = [Uploader(service, number) for number in range(2)]
     for uploader in uploaders:
         uploader.start()
-    deeds = {"service": 0, "database": 0, "stop": 0}
+    kinds = ("service", "helpers", "database", "stop")
+    deeds = dict.fromkeys(kinds, 0)
     for number in range(rounds):
         time.sleep(chance.uniform(0.3, 1.5))
-        deed = ("service", "database", "stop")[number % 3]
-        deeds[deed] += 1
+        deed = kinds[number % len(kinds)]
+        deeds[deed] += kill_helpers(service) if deed == "helpers" else 1
         if deed == "database":
             try:
                 os.kill(service.postmaster(), signal.SIGKILL)
             except (ProcessLookupError, FileNotFoundError, ValueError, IndexError):
                 pass  # it is starting
+        elif deed == "helpers":
+            pass  # done
         elif deed == "service":
             service.process.kill()
             service.process.wait()
@@ -256,6 +283,12 @@ def check_kills(service, rounds, seed):
     status, body = service.request("GET", "/collections/siege/export?f=cityjsonseq", timeout=300)
     ids = [json.loads(line)["id"] for line in body.decode().splitlines()[1:]]
     wanted = {f"{name}-{part}-{n}" for name in jobs for part in range(3) for n in range(60)}
+    wanted |= {f"{name}-hard" for name in jobs}
+    check(rounds < len(kinds) or deeds["helpers"] > 0, f"helper processes were killed: {deeds['helpers']}")
+    hard = [json.loads(service.request("GET", f"/collections/siege/items/{name}-hard?f=proof")[1]) for name in jobs]
+    proven = sum(solid["proven"] for proof in hard for solid in proof["solids"])
+    check(all(len(proof["solids"]) == 1 for proof in hard) and proven > 0,
+          f"of {len(hard)} hard solids {proven} are proven; the others are kept as they came")
     check(len(ids) == len(set(ids)) and wanted == set(ids), f"{len(ids)} features, each once; {len(wanted - set(ids))} lost")
 
 
@@ -263,7 +296,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
     parser.add_argument("examples", type=pathlib.Path)
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--rounds", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     examples = options.examples.resolve()

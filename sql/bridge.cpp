@@ -9,6 +9,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,9 +19,11 @@
 #include "codec/blob.h"
 #include "codec/page.h"
 #include "formats/ewkb.h"
+#include "geometry/mass/mass.h"
 #include "sql/faces.h"
 #include "sql/info_json.h"
 #include "sql/make_value.h"
+#include "tessellate/facets.h"
 #include "validate/certify.h"
 #include "validate/report_json.h"
 
@@ -424,6 +427,29 @@ void measures_into(const wt_job& job, wt_measures* measures, wt_reply* reply) {
   measures->shells = measured.shells;
 }
 
+/// Gives the solid of a blob and the triangles of its facets to `work`.
+template <class Work>
+void with_triangles(const wt_job& job, wt_reply* reply, const Work& work) {
+  const CallLimits call(job);
+  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
+  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(decoded->solid);
+  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
+  work(facets.divided_solid(decoded->solid), std::span<const Triangle>(facets.triangles));
+}
+
+void centroid_into(const wt_job& job, double* centre, wt_reply* reply) {
+  with_triangles(job, reply, [=](const Solid& solid, std::span<const Triangle> triangles) {
+    std::ranges::copy(geometry::centroid(solid, triangles), centre);
+  });
+}
+
+void volume_below_into(const wt_job& job, double height, double* volume, wt_reply* reply) {
+  with_triangles(job, reply, [=](const Solid& solid, std::span<const Triangle> triangles) {
+    *volume = geometry::volume_below(solid, triangles, height);
+  });
+}
+
 void faces_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
   const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
@@ -523,6 +549,15 @@ void wt_bridge_wkt(const wt_job* job, wt_reply* reply) noexcept {
 
 void wt_bridge_measures(const wt_job* job, wt_measures* measures, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::measures_into(*job, measures, reply); });
+}
+
+void wt_bridge_centroid(const wt_job* job, double centroid[3], wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::centroid_into(*job, centroid, reply); });
+}
+
+void wt_bridge_volume_below(const wt_job* job, double height, double* volume,
+                            wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::volume_below_into(*job, height, volume, reply); });
 }
 
 void wt_bridge_faces(const wt_job* job, wt_reply* reply) noexcept {

@@ -133,6 +133,12 @@ typedef struct wt_measures {
 void wt_bridge_measures(const wt_job* job, wt_measures* measures,
                         wt_reply* reply) WATERTIGHT_NOEXCEPT;
 
+/** Gives the centre of mass of the solid of a blob, each coordinate rounded once. */
+void wt_bridge_centroid(const wt_job* job, double centroid[3], wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Gives the volume of the part below a height, which is finite, rounded once. */
+void wt_bridge_volume_below(const wt_job* job, double height, double* volume,
+                            wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
 /** A facet of a solid. Lengths and areas are in units of the reference system, angles in degrees.
  */
 typedef struct wt_face {

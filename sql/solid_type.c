@@ -314,6 +314,36 @@ array_of(const double numbers[3])
 										   TYPALIGN_DOUBLE));
 }
 
+PG_FUNCTION_INFO_V1(wt_solid_centroid);
+Datum
+wt_solid_centroid(PG_FUNCTION_ARGS)
+{
+	wt_reply   *reply = new_reply();
+	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	double		centroid[3];
+
+	wt_bridge_centroid(&job, centroid, reply);
+	check_reply(reply);
+	PG_RETURN_DATUM(array_of(centroid));
+}
+
+PG_FUNCTION_INFO_V1(wt_solid_volume_below);
+Datum
+wt_solid_volume_below(PG_FUNCTION_ARGS)
+{
+	wt_reply   *reply = new_reply();
+	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	double		height = PG_GETARG_FLOAT8(1);
+	double		volume;
+
+	if (!isfinite(height))
+		ereport(ERROR,
+				(errcode(ERRCODE_INVALID_PARAMETER_VALUE), errmsg("the height is not a finite number")));
+	wt_bridge_volume_below(&job, height, &volume, reply);
+	check_reply(reply);
+	PG_RETURN_FLOAT8(volume);
+}
+
 /* The facets of a solid, as rows. */
 PG_FUNCTION_INFO_V1(wt_solid_faces);
 Datum

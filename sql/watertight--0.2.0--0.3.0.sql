@@ -114,6 +114,13 @@ CREATE FUNCTION wt_genus(solid solid) RETURNS bigint
   AS 'MODULE_PATHNAME', 'wt_solid_genus' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
 COMMENT ON FUNCTION wt_genus(solid) IS 'number of tunnels of all shells together';
 
+CREATE FUNCTION wt_centroid(solid solid) RETURNS float8[]
+  AS 'MODULE_PATHNAME', 'wt_solid_centroid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 300;
+COMMENT ON FUNCTION wt_centroid(solid) IS 'centre of mass: x, y and z, each the exact one, rounded once';
+CREATE FUNCTION wt_volume_below(solid solid, height float8) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_solid_volume_below' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 300;
+COMMENT ON FUNCTION wt_volume_below(solid, float8) IS
+  'volume of the part of a solid below a height: the exact value, rounded once';
 CREATE FUNCTION wt_faces(solid solid, OUT shell integer, OUT facet integer, OUT area float8, OUT normal float8[],
     OUT tilt float8, OUT azimuth float8, OUT centroid float8[], OUT planarity float8, OUT rings integer)
   RETURNS SETOF record

@@ -170,6 +170,12 @@ if [ -x "$build/bin/encode_documents" ]; then
     UNION ALL SELECT 'another golden', name FROM goldens g LEFT JOIN documents d USING (name)
       WHERE d.ewkb IS DISTINCT FROM wt_decode(g.blob)")
   [ -z "$different" ] || { echo "SQL and library differ:"; echo "$different"; exit 1; }
+  query -F"$(printf '\t')" -c "
+    SELECT encode(wt_as_ewkb(shape), 'hex'), wt_solid_info(shape)->'lattice'->>'kind', wt_volume(shape), wt_centroid(shape), height,
+      wt_volume_below(shape, height)
+    FROM (SELECT shape, round((0.3 * wt_bound(wt_bbox(shape), 6) + 0.7 * wt_bound(wt_bbox(shape), 3))::numeric, 4)::float8 AS height
+          FROM (SELECT wt_solid(blob) AS shape FROM documents WHERE blob IS NOT NULL) AS solids) AS cut" |
+    python3 "$source/tests/sql/exact_measures.py"
   counts=$(query -c "SELECT count(blob), count(*) - count(blob) FROM documents")
   [ "${counts%|*}" -ge 500 ] || { echo "only ${counts%|*} blobs were compared"; exit 1; }
   echo "${counts%|*} blobs of SQL and library are equal, ${counts#*|} solids invalid in both"

@@ -91,3 +91,8 @@ SELECT facet, rings, round(area::numeric, 6) AS area, normal, tilt, azimuth, cen
 SELECT name, round((sum(area) - wt_area(shape))::numeric, 9) AS difference, count(*) = wt_facet_count(shape) AS complete FROM town, wt_faces(shape) GROUP BY name, shape ORDER BY name;
 SELECT round(tilt::numeric, 3) AS tilt, round(azimuth::numeric, 3) AS azimuth FROM wt_faces('POLYHEDRALSURFACE Z (((0 0 0,0 1 0,1 0 0,0 0 0)),((0 0 0,1 0 0,0 0 1,0 0 0)),((0 0 0,0 0 1,0 1 0,0 0 0)),((1 0 0,0 1 0,0 0 1,1 0 0)))') ORDER BY facet;
 SELECT count(*) FROM wt_faces(NULL);
+
+-- The centre of mass, and volumes below heights.
+SELECT name, wt_centroid(shape), wt_volume_below(shape, -1) AS nothing, wt_volume_below(shape, 1) AS to_one, wt_volume_below(shape, 1e9) = wt_volume(shape) AS whole FROM town ORDER BY name;
+SELECT wt_volume_below(shape, 'nan') FROM town WHERE name = 'cube';
+SELECT wt_volume_below(shape, 'infinity') FROM town WHERE name = 'cube';

@@ -176,6 +176,18 @@ if [ -x "$build/bin/encode_documents" ]; then
     FROM (SELECT shape, round((0.3 * wt_bound(wt_bbox(shape), 6) + 0.7 * wt_bound(wt_bbox(shape), 3))::numeric, 4)::float8 AS height
           FROM (SELECT wt_solid(blob) AS shape FROM documents WHERE blob IS NOT NULL) AS solids) AS cut" |
     python3 "$source/tests/sql/exact_measures.py"
+  # Solids and geometries of PostGIS, whose SFCGAL measures them too.
+  query -c "COPY documents TO STDOUT" >"$folder/documents"
+  ask postgres "CREATE DATABASE gis"
+  ask gis "CREATE EXTENSION watertight"
+  ask gis "CREATE TABLE documents (name text, ewkb bytea, blob bytea)"
+  run "$bin/psql" -X -q "${connect[@]}" -d gis -c "COPY documents FROM STDIN" <"$folder/documents"
+  run "$bin/psql" -X -q -At -v ON_ERROR_STOP=1 "${connect[@]}" -d gis <"$source/tests/sql/postgis.sql" >"$folder/gis.out"
+  if [ "$(grep -c '|t$' "$folder/gis.out")" -ne 9 ] || [ "$(wc -l <"$folder/gis.out")" -ne 9 ]; then
+    cat "$folder/gis.out"
+    exit 1
+  fi
+  echo "PostGIS and SFCGAL agree"
   counts=$(query -c "SELECT count(blob), count(*) - count(blob) FROM documents")
   [ "${counts%|*}" -ge 500 ] || { echo "only ${counts%|*} blobs were compared"; exit 1; }
   echo "${counts%|*} blobs of SQL and library are equal, ${counts#*|} solids invalid in both"

@@ -2,6 +2,7 @@
 #include "sql/bridge.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -450,6 +451,13 @@ void volume_below_into(const wt_job& job, double height, double* volume, wt_repl
   });
 }
 
+void contains_into(const wt_job& job, const double* place, wt_reply* reply) {
+  const std::array<double, 3> at{place[0], place[1], place[2]};
+  with_triangles(job, reply, [=](const Solid& solid, std::span<const Triangle> triangles) {
+    reply->truth = geometry::locate(solid, triangles, at) >= 0;
+  });
+}
+
 void faces_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
   const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
@@ -558,6 +566,10 @@ void wt_bridge_centroid(const wt_job* job, double centroid[3], wt_reply* reply) 
 void wt_bridge_volume_below(const wt_job* job, double height, double* volume,
                             wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::volume_below_into(*job, height, volume, reply); });
+}
+
+void wt_bridge_contains(const wt_job* job, const double place[3], wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::contains_into(*job, place, reply); });
 }
 
 void wt_bridge_faces(const wt_job* job, wt_reply* reply) noexcept {

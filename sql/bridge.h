@@ -39,7 +39,7 @@ typedef struct wt_failure {
 typedef struct wt_reply {
   uint8_t* bytes; /* the value: a blob, EWKB, or JSON text */
   size_t size;
-  bool truth; /* the value of wt_bridge_is_valid */
+  bool truth; /* the value of wt_bridge_is_valid and wt_bridge_contains */
   wt_failure failure;
 } wt_reply;
 
@@ -138,6 +138,11 @@ void wt_bridge_centroid(const wt_job* job, double centroid[3], wt_reply* reply) 
 /** Gives the volume of the part below a height, which is finite, rounded once. */
 void wt_bridge_volume_below(const wt_job* job, double height, double* volume,
                             wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
+/** Whether the solid of a blob contains a place, inside or on its boundary; `truth` has it.
+ *  Coordinates are finite. */
+void wt_bridge_contains(const wt_job* job, const double place[3],
+                        wt_reply* reply) WATERTIGHT_NOEXCEPT;
 
 /** A facet of a solid. Lengths and areas are in units of the reference system, angles in degrees.
  */

@@ -344,6 +344,33 @@ wt_solid_volume_below(PG_FUNCTION_ARGS)
 	PG_RETURN_FLOAT8(volume);
 }
 
+PG_FUNCTION_INFO_V1(wt_solid_contains_place);
+Datum
+wt_solid_contains_place(PG_FUNCTION_ARGS)
+{
+	wt_reply   *reply = new_reply();
+	SolidFacts	facts;
+	double		place[3];
+	bool		is_in_box = true;
+	wt_job		job;
+
+	read_solid_facts(PG_GETARG_DATUM(0), &facts);
+	for (int axis = 0; axis < 3; ++axis)
+	{
+		place[axis] = PG_GETARG_FLOAT8(axis + 1);
+		if (!isfinite(place[axis]))
+			ereport(ERROR,
+					(errcode(ERRCODE_INVALID_PARAMETER_VALUE), errmsg("a coordinate is not a finite number")));
+		is_in_box &= place[axis] >= facts.box[axis] && place[axis] <= facts.box[3 + axis];
+	}
+	if (!is_in_box)
+		PG_RETURN_BOOL(false);
+	job = job_on(PG_GETARG_DATUM(0));
+	wt_bridge_contains(&job, place, reply);
+	check_reply(reply);
+	PG_RETURN_BOOL(reply->truth);
+}
+
 /* The facets of a solid, as rows. */
 PG_FUNCTION_INFO_V1(wt_solid_faces);
 Datum

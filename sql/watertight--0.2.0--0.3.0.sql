@@ -121,6 +121,10 @@ CREATE FUNCTION wt_volume_below(solid solid, height float8) RETURNS float8
   AS 'MODULE_PATHNAME', 'wt_solid_volume_below' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 300;
 COMMENT ON FUNCTION wt_volume_below(solid, float8) IS
   'volume of the part of a solid below a height: the exact value, rounded once';
+CREATE FUNCTION wt_contains(solid solid, x float8, y float8, z float8) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_contains_place' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_contains(solid, float8, float8, float8) IS
+  'whether a place is inside a solid or on its boundary, decided exactly; a place in a cavity is not inside';
 CREATE FUNCTION wt_faces(solid solid, OUT shell integer, OUT facet integer, OUT area float8, OUT normal float8[],
     OUT tilt float8, OUT azimuth float8, OUT centroid float8[], OUT planarity float8, OUT rings integer)
   RETURNS SETOF record

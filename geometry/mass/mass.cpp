@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/mass/mass.h"
 
-#include <gmpxx.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
 
 #include "geometry/lattice/grid_number.h"
 #include "geometry/predicates/exact_quotient.h"
+#include "geometry/predicates/rational_point.h"
 
 namespace watertight::geometry {
 namespace {
-
-using RationalPoint = std::array<mpq_class, 3>;
 
 mpq_class rational(const GridNumber& number, unsigned long radix) {
   mpz_class power;
@@ -34,6 +31,15 @@ mpq_class step_of(const Lattice& lattice, std::size_t axis) {
 
 mpq_class origin_of(const Lattice& lattice, std::size_t axis) {
   return rational(lattice.origin[axis], radix_of(lattice));
+}
+
+/// A coordinate in world units as one of the lattice. Doubles are decimals, except where the
+/// coordinates of the solid are doubles themselves.
+mpq_class lattice_coordinate(const Lattice& lattice, std::size_t axis, double coordinate) {
+  const mpq_class world = lattice.kind == LatticeKind::decimal
+                              ? rational(shortest_decimal(coordinate), 10)
+                              : mpq_class(coordinate);
+  return (world - origin_of(lattice, axis)) / step_of(lattice, axis);
 }
 
 /// The vertices of a solid in lattice coordinates, exactly.
@@ -102,12 +108,20 @@ std::array<double, 3> centroid(const Solid& solid, std::span<const Triangle> tri
   return centre;
 }
 
+int locate(const Solid& solid, std::span<const Triangle> triangles,
+           const std::array<double, 3>& place) {
+  RationalPoint point;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    point[axis] = lattice_coordinate(solid.lattice(), axis, place[axis]);
+  }
+  return locate_rational(point, solid.vertices(), triangles);
+}
+
 // By the divergence theorem for (0, 0, min(z, height)), whose divergence is 1 below the height and
 // 0 above it, so that no cut has to be closed.
 double volume_below(const Solid& solid, std::span<const Triangle> triangles, double height) {
   const Lattice& lattice = solid.lattice();
-  const mpq_class limit =
-      (rational(shortest_decimal(height), 10) - origin_of(lattice, 2)) / step_of(lattice, 2);
+  const mpq_class limit = lattice_coordinate(lattice, 2, height);
   const std::vector<RationalPoint> vertices = rational_vertices(solid);
   mpq_class sum = 0;  // six times the volume in lattice units
   for (const auto& [i, j, k] : triangles) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Measures that are computed in rational numbers, with one rounding at the end.
+// Measures and places of a solid in rational numbers: exact, with one rounding at the end.
 #pragma once
 
 #include <array>
@@ -20,5 +20,11 @@ std::array<double, 3> centroid(const Solid& solid, std::span<const Triangle> tri
 /// volume above it. Requires a finite height. Cost: linear; some microseconds for each triangle
 /// that the height cuts.
 double volume_below(const Solid& solid, std::span<const Triangle> triangles, double height);
+
+/// +1 if a place in world units is inside a closed solid, 0 if on its boundary, -1 if outside. The
+/// decision is exact; on a decimal lattice coordinates count as their shortest decimals, as those
+/// of the solid do, else as the doubles that they are. Requires finite coordinates. Cost: linear.
+int locate(const Solid& solid, std::span<const Triangle> triangles,
+           const std::array<double, 3>& place);
 
 }  // namespace watertight::geometry

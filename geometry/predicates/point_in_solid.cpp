@@ -5,18 +5,17 @@
 // small step along x and one infinitely smaller than that along y.
 #include "geometry/predicates/point_in_solid.h"
 
-#include <gmpxx.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/predicates/rational_point.h"
 #include "geometry/vector3.h"
 
 namespace watertight::geometry {
 namespace {
 
 using Rational = mpq_class;
-using Vector = std::array<Rational, 3>;
+using Vector = RationalPoint;
 
 Vector vector_of(const Point& p) { return {Rational(p.x), Rational(p.y), Rational(p.z)}; }
 
@@ -105,7 +104,11 @@ std::optional<Point> exact_doubles(const TrianglePoint& point) {
 
 int locate_exactly(const TrianglePoint& point, std::span<const Point> vertices,
                    std::span<const Triangle> triangles) {
-  const Vector p = vector_of(point);
+  return locate_rational(vector_of(point), vertices, triangles);
+}
+
+int locate_rational(const RationalPoint& p, std::span<const Point> vertices,
+                    std::span<const Triangle> triangles) {
   bool is_inside = false;
   for (const Triangle& t : triangles) {
     const Point& low = vertices[t[0]];

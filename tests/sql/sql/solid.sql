@@ -96,3 +96,10 @@ SELECT count(*) FROM wt_faces(NULL);
 SELECT name, wt_centroid(shape), wt_volume_below(shape, -1) AS nothing, wt_volume_below(shape, 1) AS to_one, wt_volume_below(shape, 1e9) = wt_volume(shape) AS whole FROM town ORDER BY name;
 SELECT wt_volume_below(shape, 'nan') FROM town WHERE name = 'cube';
 SELECT wt_volume_below(shape, 'infinity') FROM town WHERE name = 'cube';
+
+-- Places.
+SELECT name, wt_contains(shape, 0.5, 0.5, 0.5) AS inside, wt_contains(shape, 1, 1, 1) AS corner, wt_contains(shape, 1, 0.25, 0.125) AS facet, wt_contains(shape, 1.0000000000000002, 0.5, 0.5) AS beside,
+       wt_contains(shape, 2.5, 2.5, 2.5) AS in_cavity, wt_contains(shape, 2.5, 2.5, 2) AS on_cavity, wt_contains(shape, 5, 5, 1) AS below_cavity FROM town WHERE name IN ('cube', 'hollow') ORDER BY name;
+SELECT wt_contains(shape, 84602.25, 447002.5, 1) AS in_tunnel, wt_contains(shape, 84601.25, 447002.5, 1) AS on_wall, wt_contains(shape, 84601, 447002.5, 1) AS inside FROM town WHERE name = 'pierced';
+SELECT wt_contains(shape, 'nan', 0, 0) FROM town WHERE name = 'cube';
+SELECT bool_and(wt_contains(shape, (centroid)[1], (centroid)[2], (centroid)[3])) AS centres_of_facets FROM town, wt_faces(shape) WHERE name = 'cube';

@@ -143,4 +143,19 @@ TEST_CASE("below and above are the whole, and a mirror image has them the other 
   }
 }
 
+TEST_CASE("a place is inside, on the boundary or outside, exactly") {
+  // The slanted facet has x + y + z = 3 in decimetres from the origin (500, -7, 0.25).
+  const Mesh mesh = tetrahedron({0, 0, 0}, {30, 0, 0}, {0, 30, 0}, {0, 0, 30}, decimetres());
+  const auto at = [&](double x, double y, double z) {
+    return geometry::locate(mesh.solid, mesh.triangles, {x, y, z});
+  };
+  CHECK(at(500.1, -6.9, 0.35) == 1);
+  CHECK(at(501.1, -5.9, 1.05) == 0);  // 1.1 + 1.1 + 0.8, none of which is a double
+  CHECK(at(501.1, -5.9, 1.0500000000000003) == -1);
+  CHECK(at(501.1, -5.9, 1.0499999999999998) == 1);
+  CHECK(at(500, -7, 0.25) == 0);
+  CHECK(at(500, -7, 0.2499999999999999) == -1);
+  CHECK(at(500.1, -6.9, -1e300) == -1);
+}
+
 }  // namespace watertight::test

@@ -1,30 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sql/bridge.h"
 
-#include <algorithm>
-#include <array>
-#include <chrono>
 #include <cstdlib>
-#include <cstring>
-#include <exception>
 #include <memory>
-#include <new>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
-#include "base/bytes.h"
-#include "base/result.h"
 #include "codec/blob.h"
 #include "codec/page.h"
 #include "formats/ewkb.h"
-#include "geometry/mass/mass.h"
-#include "sql/faces.h"
 #include "sql/info_json.h"
 #include "sql/make_value.h"
-#include "tessellate/facets.h"
+#include "sql/reply.h"
 #include "validate/certify.h"
 #include "validate/report_json.h"
 
@@ -37,154 +24,6 @@ namespace {
 
 // The most findings that a detail names; wt_validate gives the whole report.
 constexpr std::size_t kFindingsShown = 20;
-// The most bytes of a result: a varlena of PostgreSQL holds less than 1 GiB.
-constexpr std::size_t kLargestValue = (1ULL << 30) - 1024;
-// The memory of this process that validating or encoding takes for each facet or vertex, an
-// estimate: up to 2 KiB measured on closed meshes of 250,000 to 1,000,000 triangles, without the
-// helper, which has a limit of its own.
-constexpr std::uint64_t kBytesPerElement = 4096;
-
-char* copy_of(std::string_view text) noexcept {
-  char* const copy = static_cast<char*>(std::malloc(text.size() + 1));  // NOLINT: freed by C
-  if (copy == nullptr) return nullptr;
-  std::memcpy(copy, text.data(), text.size());
-  copy[text.size()] = '\0';
-  return copy;
-}
-
-void fail(wt_reply* reply, std::string_view state, std::string_view message,
-          std::string_view detail = {}) noexcept {
-  wt_failure& failure = reply->failure;
-  std::memcpy(failure.sqlstate, state.data(), 5);
-  const std::size_t length = std::min(message.size(), sizeof(failure.message) - 1);
-  std::memcpy(failure.message, message.data(), length);
-  failure.message[length] = '\0';
-  // The message must not end within a UTF-8 character.
-  for (std::size_t end = length; end < message.size() && end > 0; --end) {
-    if ((static_cast<unsigned char>(message[end]) & 0xC0) != 0x80) {
-      failure.message[end] = '\0';
-      break;
-    }
-  }
-  if (!detail.empty()) failure.detail = copy_of(detail);
-}
-
-void fail(wt_reply* reply, const Error& error) {
-  std::string_view state = "XX000";
-  switch (error.code) {
-    case ErrorCode::malformed:
-      state = "22P03";  // invalid_binary_representation
-      break;
-    case ErrorCode::unsupported:
-      state = "0A000";  // feature_not_supported
-      break;
-    case ErrorCode::limit_exceeded:
-      state = "54000";  // program_limit_exceeded
-      break;
-    case ErrorCode::cancelled:
-      state = "57014";  // query_canceled
-      break;
-    case ErrorCode::unavailable:
-      state = "58000";  // system_error
-      break;
-    case ErrorCode::not_encodable:
-    case ErrorCode::not_found:
-    case ErrorCode::conflict:
-    case ErrorCode::precondition_failed:
-    case ErrorCode::invalid_argument:
-      state = "22023";  // invalid_parameter_value
-      break;
-  }
-  const std::string detail =
-      error.byte_offset ? "At byte " + std::to_string(*error.byte_offset) + "." : std::string();
-  fail(reply, state, error.message, detail);
-}
-
-void answer(wt_reply* reply, ByteView bytes) {
-  if (bytes.size() > kLargestValue) {
-    fail(reply, "54000", "the result is larger than a value can be (1 GiB)");
-    return;
-  }
-  reply->bytes = static_cast<std::uint8_t*>(std::malloc(bytes.size() + 1));  // NOLINT: freed by C
-  if (reply->bytes == nullptr) {
-    fail(reply, "53200", "out of memory");
-    return;
-  }
-  std::copy(bytes.begin(), bytes.end(), reply->bytes);
-  reply->bytes[bytes.size()] = 0;
-  reply->size = bytes.size();
-}
-
-/// Runs `work`; whatever it throws becomes a failure of the reply.
-template <class Work>
-void guarded(wt_reply* reply, const Work& work) noexcept {
-  try {
-    work();
-  } catch (const std::bad_alloc&) {
-    fail(reply, "53200", "out of memory");
-  } catch (const std::exception& exception) {
-    fail(reply, "XX000", exception.what());
-  } catch (...) {
-    fail(reply, "XX000", "an unknown exception");
-  }
-}
-
-ByteView bytes_of(const wt_job& job) { return {job.bytes, job.size}; }
-
-/// The limits that the settings watertight.max_seconds and watertight.max_memory set for a call.
-class CallLimits {
- public:
-  explicit CallLimits(const wt_job& job) : job_(job) {}
-
-  /// The limits of what is read, within the built-in ones.
-  Limits of_input() const {
-    Limits limits;
-    if (job_.max_memory == 0) return limits;
-    const std::uint64_t elements = memory_bytes() / kBytesPerElement;
-    limits.bytes = std::min(limits.bytes, memory_bytes());
-    limits.vertices = std::min(limits.vertices, elements);
-    limits.facets = std::min(limits.facets, elements);
-    limits.rings = std::min(limits.rings, elements);
-    limits.shells = std::min(limits.shells, elements);
-    return limits;
-  }
-
-  std::uint64_t memory_bytes() const { return std::uint64_t{job_.max_memory} << 20; }
-
-  bool is_late() const {
-    return job_.max_seconds > 0 && Clock::now() - start_ >= std::chrono::seconds(job_.max_seconds);
-  }
-
-  CancelPoll poll() const {
-    return [this] { return is_late() || is_interrupted(); };
-  }
-
-  /// The reason why the call must end now, if it must.
-  Status check() const {
-    if (is_interrupted()) return Error{ErrorCode::cancelled, "cancelled"};
-    if (!is_late()) return Done{};
-    return Error{ErrorCode::limit_exceeded, "the call took longer than watertight.max_seconds (" +
-                                                std::to_string(job_.max_seconds) + " s)"};
-  }
-
-  /// An error of a reader or decoder, which names the setting if it is what limits.
-  Error of_reading(Error error) const {
-    const Limits built_in;
-    const bool is_setting = error.code == ErrorCode::limit_exceeded && job_.max_memory > 0 &&
-                            of_input().facets < built_in.facets;
-    if (is_setting) {
-      error.message += " (watertight.max_memory is " + std::to_string(job_.max_memory) + " MB)";
-    }
-    return error;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool is_interrupted() const { return job_.poll != nullptr && job_.poll(); }
-
-  const wt_job& job_;
-  Clock::time_point start_ = Clock::now();
-};
 
 struct Examined {
   SubmittedSolid submitted;
@@ -414,76 +253,6 @@ void wkt_into(const wt_job& job, wt_reply* reply) {
   answer(reply, as_bytes(text));
 }
 
-void measures_into(const wt_job& job, wt_measures* measures, wt_reply* reply) {
-  const CallLimits call(job);
-  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
-  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
-  const geometry::Measures measured = measures_of(decoded->solid);
-  std::ranges::copy(measured.box_min, measures->box_min);
-  std::ranges::copy(measured.box_max, measures->box_max);
-  measures->genus = measured.genus;
-  measures->vertices = measured.vertices;
-  measures->facets = measured.facets;
-  measures->rings = measured.rings;
-  measures->shells = measured.shells;
-}
-
-/// Gives the solid of a blob and the triangles of its facets to `work`.
-template <class Work>
-void with_triangles(const wt_job& job, wt_reply* reply, const Work& work) {
-  const CallLimits call(job);
-  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
-  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
-  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(decoded->solid);
-  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
-  work(facets.divided_solid(decoded->solid), std::span<const Triangle>(facets.triangles));
-}
-
-void centroid_into(const wt_job& job, double* centre, wt_reply* reply) {
-  with_triangles(job, reply, [=](const Solid& solid, std::span<const Triangle> triangles) {
-    std::ranges::copy(geometry::centroid(solid, triangles), centre);
-  });
-}
-
-void volume_below_into(const wt_job& job, double height, double* volume, wt_reply* reply) {
-  with_triangles(job, reply, [=](const Solid& solid, std::span<const Triangle> triangles) {
-    *volume = geometry::volume_below(solid, triangles, height);
-  });
-}
-
-void contains_into(const wt_job& job, const double* place, wt_reply* reply) {
-  const std::array<double, 3> at{place[0], place[1], place[2]};
-  with_triangles(job, reply, [=](const Solid& solid, std::span<const Triangle> triangles) {
-    reply->truth = geometry::locate(solid, triangles, at) >= 0;
-  });
-}
-
-void faces_into(const wt_job& job, wt_reply* reply) {
-  const CallLimits call(job);
-  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
-  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
-  const std::vector<wt_face> faces = faces_of(decoded->solid);
-  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
-  answer(reply,
-         {reinterpret_cast<const std::uint8_t*>(faces.data()), faces.size() * sizeof(wt_face)});
-}
-
-/// compare(), as a number; 0 after a failure of the reply.
-int compare_blobs(const wt_job& job, ByteView other, wt_reply* reply) {
-  const CallLimits call(job);
-  const Result<Decoded> left = decode(bytes_of(job), call.of_input());
-  const Result<Decoded> right = decode(other, call.of_input());
-  Result<int> order = 0;
-  if (!left || !right) {
-    order = call.of_reading(left ? right.error() : left.error());
-  } else {
-    order = compare(left->solid, right->solid);
-  }
-  if (order) return *order;
-  fail(reply, order.error());
-  return 0;
-}
-
 }  // namespace
 }  // namespace watertight::sql
 
@@ -553,34 +322,6 @@ void wt_bridge_solid_of_wkt(const wt_job* job, wt_reply* reply) noexcept {
 
 void wt_bridge_wkt(const wt_job* job, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::wkt_into(*job, reply); });
-}
-
-void wt_bridge_measures(const wt_job* job, wt_measures* measures, wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::sql::measures_into(*job, measures, reply); });
-}
-
-void wt_bridge_centroid(const wt_job* job, double centroid[3], wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::sql::centroid_into(*job, centroid, reply); });
-}
-
-void wt_bridge_volume_below(const wt_job* job, double height, double* volume,
-                            wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::sql::volume_below_into(*job, height, volume, reply); });
-}
-
-void wt_bridge_contains(const wt_job* job, const double place[3], wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::sql::contains_into(*job, place, reply); });
-}
-
-void wt_bridge_faces(const wt_job* job, wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::sql::faces_into(*job, reply); });
-}
-
-int wt_bridge_compare(const wt_job* job, const uint8_t* other, size_t other_size,
-                      wt_reply* reply) noexcept {
-  int order = 0;
-  guarded(reply, [&] { order = watertight::sql::compare_blobs(*job, {other, other_size}, reply); });
-  return order;
 }
 
 wt_rule_choice wt_default_rules() noexcept {

@@ -9,6 +9,7 @@
 #include "codec/blob.h"
 #include "codec/page.h"
 #include "formats/ewkb.h"
+#include "geometry/lattice/moved_lattice.h"
 #include "sql/info_json.h"
 #include "sql/make_value.h"
 #include "sql/reply.h"
@@ -239,6 +240,24 @@ void solid_into(const wt_job& job, wt_reply* reply) {
   solid_of_read(job, call, formats::read_ewkb(bytes_of(job), call.of_input()), reply);
 }
 
+void translate_into(const wt_job& job, const double* way, wt_reply* reply) {
+  const CallLimits call(job);
+  Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
+  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
+  const Solid& solid = decoded->solid;
+  const auto lattice = geometry::moved_lattice(solid.lattice(), {way[0], way[1], way[2]});
+  if (!lattice) return fail(reply, lattice.error());
+  auto moved = Solid::make(solid.arrays(), *lattice, solid.srid());
+  if (!moved) return fail(reply, moved.error());
+  decoded->solid = *std::move(moved);
+  const Result<Bytes> blob = codec::blob_of(*decoded);
+  if (!blob) return fail(reply, blob.error());
+  wt_job again = job;
+  again.bytes = blob->data();
+  again.size = blob->size();
+  solid_of_blob(again, call, reply);
+}
+
 void solid_of_wkt_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
   solid_of_read(job, call, formats::read_wkt(as_text(bytes_of(job)), call.of_input()), reply);
@@ -318,6 +337,10 @@ void wt_bridge_solid(const wt_job* job, wt_reply* reply) noexcept {
 
 void wt_bridge_solid_of_wkt(const wt_job* job, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::solid_of_wkt_into(*job, reply); });
+}
+
+void wt_bridge_translate(const wt_job* job, const double way[3], wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::translate_into(*job, way, reply); });
 }
 
 void wt_bridge_wkt(const wt_job* job, wt_reply* reply) noexcept {

@@ -116,6 +116,10 @@ void wt_bridge_rules_of(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 void wt_bridge_solid(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers WKT, UTF-8, in the same way. */
 void wt_bridge_solid_of_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a blob with the value of its solid moved by `way`, in units of the reference system,
+ *  without rounding; it is judged again as one that comes in. */
+void wt_bridge_translate(const wt_job* job, const double way[3],
+                         wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with WKT, UTF-8. */
 void wt_bridge_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 

@@ -217,6 +217,21 @@ wt_solid_rules(PG_FUNCTION_ARGS)
 	PG_RETURN_DATUM(jsonb_of(run_on_solid(wt_bridge_rules_of, PG_GETARG_DATUM(0))));
 }
 
+PG_FUNCTION_INFO_V1(wt_solid_translate);
+Datum
+wt_solid_translate(PG_FUNCTION_ARGS)
+{
+	wt_reply   *reply = new_reply();
+	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	double		way[3];
+
+	for (int axis = 0; axis < 3; ++axis)
+		way[axis] = PG_GETARG_FLOAT8(axis + 1);
+	wt_bridge_translate(&job, way, reply);
+	check_reply(reply);
+	PG_RETURN_DATUM(bytea_of(reply));
+}
+
 /* Measures that stand in the value. */
 
 PG_FUNCTION_INFO_V1(wt_solid_volume);

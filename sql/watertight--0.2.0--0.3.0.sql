@@ -73,6 +73,10 @@ COMMENT ON FUNCTION wt_as_ewkb(solid) IS
 CREATE FUNCTION wt_as_text(solid solid) RETURNS text
   AS 'MODULE_PATHNAME', 'wt_solid_wkt' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 50;
 COMMENT ON FUNCTION wt_as_text(solid) IS 'WKT of a solid: POLYHEDRALSURFACE Z, or SOLID Z when it has cavities';
+CREATE FUNCTION wt_translate(solid solid, x float8, y float8, z float8) RETURNS solid
+  AS 'MODULE_PATHNAME', 'wt_solid_translate' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
+COMMENT ON FUNCTION wt_translate(solid, float8, float8, float8) IS
+  'the solid moved, without rounding; an error where its coordinates would have to be rounded';
 CREATE FUNCTION wt_solid_info(solid solid) RETURNS jsonb
   AS 'MODULE_PATHNAME', 'wt_solid_info' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
 COMMENT ON FUNCTION wt_solid_info(solid) IS 'header, counts and sizes of the parts of the blob of a solid';

@@ -103,3 +103,10 @@ SELECT name, wt_contains(shape, 0.5, 0.5, 0.5) AS inside, wt_contains(shape, 1, 
 SELECT wt_contains(shape, 84602.25, 447002.5, 1) AS in_tunnel, wt_contains(shape, 84601.25, 447002.5, 1) AS on_wall, wt_contains(shape, 84601, 447002.5, 1) AS inside FROM town WHERE name = 'pierced';
 SELECT wt_contains(shape, 'nan', 0, 0) FROM town WHERE name = 'cube';
 SELECT bool_and(wt_contains(shape, (centroid)[1], (centroid)[2], (centroid)[3])) AS centres_of_facets FROM town, wt_faces(shape) WHERE name = 'cube';
+
+-- Moved solids.
+SELECT name, wt_bbox(wt_translate(shape, 0.1, -0.2, 1e6)) AS bbox, wt_volume(wt_translate(shape, 0.1, 0.2, 0.3)) = wt_volume(shape) AS same_volume,
+       wt_translate(wt_translate(shape, 0.1, 0.2, 0.3), -0.1, -0.2, -0.3) = shape AS back, wt_solid_rules(wt_translate(shape, 1, 2, 3)) = wt_solid_rules(shape) AS same_rules
+FROM town ORDER BY name;
+SELECT wt_translate(shape, 1e-300, 0, 0) FROM town WHERE name = 'cube';
+SELECT wt_translate(shape, 'nan', 0, 0) FROM town WHERE name = 'cube';

@@ -127,7 +127,6 @@ void wt_bridge_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 typedef struct wt_measures {
   double box_min[3]; /* in units of the reference system */
   double box_max[3];
-  int64_t genus; /* the sum over all shells */
   uint32_t vertices;
   uint32_t facets;
   uint32_t rings;
@@ -137,6 +136,8 @@ typedef struct wt_measures {
 void wt_bridge_measures(const wt_job* job, wt_measures* measures,
                         wt_reply* reply) WATERTIGHT_NOEXCEPT;
 
+/** Gives the genus of the solid of a blob, the sum over all shells. */
+void wt_bridge_genus(const wt_job* job, int64_t* genus, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Gives the centre of mass of the solid of a blob, each coordinate rounded once. */
 void wt_bridge_centroid(const wt_job* job, double centroid[3], wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Gives the volume of the part below a height, which is finite, rounded once. */

@@ -38,15 +38,19 @@ void with_triangles(const wt_job& job, wt_reply* reply, const Work& work) {
 
 void measures_into(const wt_job& job, wt_measures* measures, wt_reply* reply) {
   with_solid(job, reply, [=](const Solid& solid) {
-    const geometry::Measures measured = measures_of(solid);
+    // Without triangles: volume and area, which stand in the value, are not asked for.
+    const geometry::Measures measured = geometry::measure(solid, {});
     std::ranges::copy(measured.box_min, measures->box_min);
     std::ranges::copy(measured.box_max, measures->box_max);
-    measures->genus = measured.genus;
     measures->vertices = measured.vertices;
     measures->facets = measured.facets;
     measures->rings = measured.rings;
     measures->shells = measured.shells;
   });
+}
+
+void genus_into(const wt_job& job, std::int64_t* genus, wt_reply* reply) {
+  with_solid(job, reply, [=](const Solid& solid) { *genus = measures_of(solid).genus; });
 }
 
 void centroid_into(const wt_job& job, double* centre, wt_reply* reply) {
@@ -99,6 +103,10 @@ using watertight::sql::guarded;
 
 void wt_bridge_measures(const wt_job* job, wt_measures* measures, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::measures_into(*job, measures, reply); });
+}
+
+void wt_bridge_genus(const wt_job* job, int64_t* genus, wt_reply* reply) noexcept {
+  guarded(reply, [=] { watertight::sql::genus_into(*job, genus, reply); });
 }
 
 void wt_bridge_centroid(const wt_job* job, double centroid[3], wt_reply* reply) noexcept {

@@ -315,7 +315,13 @@ PG_FUNCTION_INFO_V1(wt_solid_genus);
 Datum
 wt_solid_genus(PG_FUNCTION_ARGS)
 {
-	PG_RETURN_INT64(measures_of_argument(fcinfo).genus);
+	wt_reply   *reply = new_reply();
+	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	int64_t		genus;
+
+	wt_bridge_genus(&job, &genus, reply);
+	check_reply(reply);
+	PG_RETURN_INT64(genus);
 }
 
 static Datum

@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures tables of the type solid: rows.py BUILD [--rows N] DOCUMENT...
+
+The valid solids of the documents are moved to places of their own until there are N rows (100,000), in a server of its
+own with PostgreSQL's default settings but 1 GB of shared buffers. Measured are: judging and loading EWKB with full proof, the sizes of
+tables of solids, blobs, EWKB (in bytea, compressed by PostgreSQL) beside each other, the index, a dump and its return,
+and queries. Needs what tests/sql/run_regress.sh needs.
+"""
+import argparse
+import pathlib
+import statistics
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "siege"))
+from service import temporary_folder, unprivileged  # noqa: E402
+
+
+class Server:
+    def __init__(self, build, folder):
+        self.folder = folder
+        self.bin = subprocess.run([ROOT / "scripts" / "relocated-postgres", build, str(folder / "prefix")], check=True,
+                                  capture_output=True, text=True).stdout.strip()
+        self.prefix, user = unprivileged()
+        if user:
+            subprocess.run(["chown", "-R", user.pw_name, str(folder)], check=True)
+        self.run("initdb", "-D", str(folder / "data"), "-N", "--username=watertight", "--encoding=UTF8", "--no-locale", "--auth=trust")
+        self.run("pg_ctl", "-D", str(folder / "data"), "-w", "-s", "-l", str(folder / "log"), "-o",
+                 f"-c listen_addresses= -c unix_socket_directories={folder} -c shared_buffers=1GB", "start")
+
+    def run(self, name, *words, **options):
+        return subprocess.run([*self.prefix, f"{self.bin}/{name}", *words], check=True, capture_output=True, text=True, **options).stdout
+
+    def ask(self, *statements, database="postgres", stdin=None):
+        commands = [word for statement in statements for word in ("-c", statement)]
+        return self.run("psql", "-X", "-q", "-At", "-v", "ON_ERROR_STOP=1", "-h", str(self.folder), "-U", "watertight",
+                        "-d", database, *commands, stdin=stdin).strip()
+
+    def seconds(self, *statements):
+        start = time.perf_counter()
+        self.ask(*statements)
+        return time.perf_counter() - start
+
+    def stop(self):
+        self.run("pg_ctl", "-D", str(self.folder / "data"), "-s", "-m", "immediate", "stop")
+
+
+def say(what, value):
+    print(f"{what:62} {value}", flush=True)
+
+
+def load(server, build, documents, rows):
+    rows_file = server.folder / "rows"
+    with rows_file.open("w") as out:
+        subprocess.run([f"{build}/bin/encode_documents", *map(str, documents)], check=True, stdout=out)
+    server.ask("CREATE EXTENSION watertight", "CREATE TABLE documents (name text, ewkb bytea, blob bytea)")
+    with rows_file.open() as source:
+        server.ask("COPY documents FROM STDIN", stdin=source)
+    server.ask("DELETE FROM documents WHERE blob IS NULL", "ANALYZE documents")
+    count = int(server.ask("SELECT count(*) FROM documents"))
+    for name, option in (("one process", "SET max_parallel_workers_per_gather = 0"),
+                         ("parallel", "SET min_parallel_table_scan_size = 0; ALTER TABLE documents SET (parallel_workers = 1)")):
+        elapsed = server.seconds(option, "SELECT count(wt_solid(ewkb)) FROM documents, generate_series(1, 5)")
+        say(f"judged with full proof, {name}", f"{5 * count / elapsed:9.0f} solids/s")
+    copies = -(-rows // count)
+    server.ask(f"CREATE TABLE town AS SELECT (row_number() OVER ())::int AS id, wt_translate(wt_solid(blob), 2000 * (c % 40), 2000 * (c / 40), 0) AS shape"
+               f" FROM documents, generate_series(0, {copies - 1}) AS c LIMIT {rows}")
+    server.ask("ALTER TABLE town ADD PRIMARY KEY (id)", "VACUUM ANALYZE town")
+    return int(server.ask("SELECT count(*) FROM town"))
+
+
+def measure_sizes(server, rows):
+    server.ask("CREATE TABLE as_ewkb AS SELECT id, wt_as_ewkb(shape) AS ewkb FROM town", "CREATE TABLE as_blob AS SELECT id, shape::bytea AS blob FROM town")
+    size = {name: int(server.ask(f"SELECT pg_table_size('{name}')")) for name in ("town", "as_ewkb", "as_blob")}
+    for name, value in size.items():
+        say(f"table {name}", f"{value / 1e6:9.1f} MB, {value / rows:7.1f} bytes a row, {100 * value / size['as_ewkb']:5.1f} % of EWKB")
+    say("a value", f"{float(server.ask('SELECT avg(pg_column_size(shape)) FROM town')):9.1f} bytes; its EWKB "
+        + server.ask("SELECT round(avg(length(ewkb))) FROM as_ewkb") + " bytes")
+
+
+def measure_index(server):
+    say("index on boxes, made", f"{server.seconds('CREATE INDEX town_box ON town USING gist (shape)'):9.1f} s")
+    size = int(server.ask("SELECT pg_relation_size('town_box')"))
+    say("index on boxes, size", f"{size / 1e6:9.1f} MB")
+    server.ask("VACUUM ANALYZE town")
+
+
+def timed(server, statement, times=50):
+    """The median and the 99th percentile in the server, milliseconds, warm."""
+    script = server.folder / "script.sql"
+    script.write_text(statement + ";\n")
+    out = server.run("psql", "-X", "-At", "-h", str(server.folder), "-U", "watertight", "-d", "postgres", "-c", "\\timing on",
+                     *[word for _ in range(times + 3) for word in ("-c", statement)])
+    found = sorted(float(line.split()[1]) for line in out.splitlines() if line.startswith("Time:"))[:-3]
+    return statistics.median(found), found[int(len(found) * 0.99)]
+
+
+def measure_queries(server, rows):
+    bounds = [float(server.ask(f"SELECT wt_bound(wt_extent(shape), {i}) FROM town")) for i in range(1, 7)]
+    wide, deep = bounds[3] - bounds[0], bounds[4] - bounds[1]
+    x, y = bounds[0] + 0.4 * wide, bounds[1] + 0.4 * deep
+    box = f"wt_box({x}, {y}, -1000, {x + 0.1 * wide}, {y + 0.1 * deep}, 10000)"  # a hundredth of the area
+    found = server.ask(f"SELECT count(*) FROM town WHERE shape && {box}")
+    for what, statement, times in (
+            ("one solid by id", f"SELECT shape FROM town WHERE id = {rows // 2}", 200),
+            (f"the first 100 of {found} in 1 % of the area", f"SELECT id FROM town WHERE shape && {box} LIMIT 100", 100),
+            (f"all {found} in 1 % of the area, counted", f"SELECT count(*) FROM town WHERE shape && {box}", 20),
+            ("the 10 nearest to a place", f"SELECT id FROM town ORDER BY shape <-> wt_box({x}, {y}, 0, {x}, {y}, 0) LIMIT 10", 100)):
+        median, most = timed(server, statement, times)
+        say(what, f"{median:9.2f} ms, p99 {most:.2f}")
+    for what, expression in (("volumes and areas", "sum(wt_volume(shape)), sum(wt_area(shape))"), ("facets", "sum(wt_facet_count(shape))"),
+                             ("EWKB", "sum(length(wt_as_ewkb(shape)))"), ("exact centres", "count(wt_centroid(shape))"),
+                             ("volumes below a height", "sum(wt_volume_below(shape, 3))"), ("boxes without the index", "wt_extent(shape)")):
+        elapsed = server.seconds("SET min_parallel_table_scan_size = 0", f"SELECT {expression} FROM town")
+        say(f"{what} of all", f"{elapsed:9.2f} s, {rows / elapsed:9.0f} solids/s")
+
+
+def measure_dump(server, rows):
+    file = server.folder / "dump"
+    elapsed = server.seconds(f"COPY town TO '{file}'")
+    say("dumped (COPY TO)", f"{elapsed:9.1f} s, {rows / elapsed:9.0f} solids/s, {file.stat().st_size / 1e6:.1f} MB")
+    server.ask("CREATE TABLE again (LIKE town)")
+    elapsed = server.seconds(f"COPY again FROM '{file}'")
+    say("came back (COPY FROM), judged by the exact tests", f"{elapsed:9.1f} s, {rows / elapsed:9.0f} solids/s")
+    if server.ask("SELECT count(*) FROM town JOIN again USING (id) WHERE town.shape = again.shape") != str(rows):
+        raise SystemExit("rows: other solids came back")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("build")
+    parser.add_argument("--rows", type=int, default=100_000)
+    parser.add_argument("documents", nargs="+", type=pathlib.Path)
+    options = parser.parse_intermixed_args()
+    build = str(pathlib.Path(options.build).resolve())
+    documents = [document.resolve() for document in options.documents]
+    with temporary_folder("rows") as folder:
+        server = Server(build, folder)
+        try:
+            rows = load(server, build, documents, options.rows)
+            say("rows", f"{rows:9}")
+            measure_sizes(server, rows)
+            measure_index(server)
+            measure_queries(server, rows)
+            measure_dump(server, rows)
+        finally:
+            server.stop()
+
+
+if __name__ == "__main__":
+    main()

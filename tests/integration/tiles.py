@@ -153,9 +153,8 @@ def compare_command(folder, expected):
     check(refused.returncode == 2 and b"is there already" in refused.stderr, "a folder that is there is not written to")
 
 
-def as_files(folder, tileset, files):
+def as_files(out, tileset, files):
     """The tileset of the service as files, whose addresses have no parameters."""
-    out = folder / "walked"
     out.mkdir()
     for (_, _, tile), file in zip(tiles_of(tileset["root"]), files):
         shutil.copy(file, out / file.name)
@@ -164,19 +163,44 @@ def as_files(folder, tileset, files):
     return out
 
 
+def fetched(service, folder, layer):
+    """The tileset of a layer, and its contents as files in the order of tiles_of()."""
+    tileset = json.loads(service.request("GET", f"/collections/town/3dtiles?layer={layer}")[1])
+    files = []
+    for uri, _, _ in tiles_of(tileset["root"]):
+        status, body = service.request("GET", "/collections/town/" + uri)
+        assert status == 200, body
+        files.append(folder / f"{layer}-{len(files)}.glb")
+        files[-1].write_bytes(body)
+    return tileset, files
+
+
+def check_findings(service, folder):
+    """The layer of the findings is valid, and has a pin for each of them within the box of its tile."""
+    tileset, files = fetched(service, folder, "findings")
+    statistics = json.loads(service.request("GET", "/collections/town/statistics")[1])
+    wanted = sum(finding["count"] for finding in statistics["findings"])
+    contents = read(files)
+    outside = 0
+    for (_, _, tile), content in zip(tiles_of(tileset["root"]), contents):
+        box = tile["boundingVolume"]["box"]
+        for pin in content["features"]:
+            x, y, z = pin["middle"][0], -pin["middle"][2], pin["middle"][1]
+            outside += any(abs(v - box[i]) > box[3 + 4 * i] for i, v in enumerate([x, y, z]))
+    bad = [content["bad"] for content in contents if content["errors"] or content["warnings"]]
+    pins = sum(len(content["features"]) for content in contents)
+    check(not bad and pins == wanted > 0 and outside == 0, f"{pins} pins of {wanted} findings, {outside} outside of their tiles {bad}")
+    walk("findings", [as_files(folder / "walked-findings", tileset, files)])
+
+
 def compare_service(folder, expected):
     with Service(PROGRAM, folder) as service:
         status, body = service.request("POST", "/collections/town/items?invalid=keep", DOCUMENT.read_bytes(), 300)
         assert status == 201, body
-        tileset = json.loads(service.request("GET", "/collections/town/3dtiles")[1])
-        files = []
-        for uri, _, _ in tiles_of(tileset["root"]):
-            status, body = service.request("GET", "/collections/town/" + uri)
-            assert status == 200, body
-            files.append(folder / f"{len(files)}.glb")
-            files[-1].write_bytes(body)
+        tileset, files = fetched(service, folder, "features")
         compare("service", tileset, files, expected)
-        walk("service", [as_files(folder, tileset, files)])
+        walk("service", [as_files(folder / "walked", tileset, files)])
+        check_findings(service, folder)
         one = next(iter(expected.features))
         _, body = service.request("GET", f"/collections/town/items/{one}?f=glb")
         (folder / "one.glb").write_bytes(body)

@@ -537,6 +537,8 @@ GroupReport GroupExaminer::run(std::span<CellPair> neighbours) {
     give_up("there are too many solids whose boxes overlap");
     return std::move(report_);
   }
+  // Before any pair is compared, since that is when contacts are noted.
+  const bool are_neighbours_known = find_neighbours(neighbours);
   bool is_complete = true;
   const std::uint64_t most = std::max<std::uint64_t>(options_.limits.findings, 1);
   for (const Pair& pair : *candidates) {
@@ -552,7 +554,7 @@ GroupReport GroupExaminer::run(std::span<CellPair> neighbours) {
       break;
     }
   }
-  if (is_complete && !find_neighbours(neighbours)) {
+  if (is_complete && !are_neighbours_known) {
     skip({kAdjacenciesInconsistent}, "there are too many pairs of solids of neighbours");
     is_complete = false;
   }

@@ -35,6 +35,18 @@ class Group {
     for (const auto& solid : solids_) members.push_back({solid ? &*solid : nullptr});
     return validate::check_group(members, kind, options);
   }
+  /// How the first two members meet as neighbouring cells.
+  validate::CellContact contact(const validate::GroupOptions& options = {}) const {
+    std::vector<validate::GroupMember> members;
+    std::vector<Index> cells;
+    for (const auto& solid : solids_) {
+      cells.push_back(static_cast<Index>(members.size()));
+      members.push_back({&*solid});
+    }
+    std::vector<validate::CellPair> pairs{{0, 1}};
+    validate::check_cells(members, cells, pairs, options);
+    return pairs[0].contact;
+  }
 
  private:
   std::vector<std::optional<ValidSolid>> solids_;
@@ -366,6 +378,24 @@ TEST_CASE("the comparison does not depend on the order of members") {
   }
   CHECK(overlaps > 20);
   CHECK(touches > 10);
+}
+
+TEST_CASE("neighbours are compared also where the box of one is within that of the other") {
+  using validate::CellContact;
+  const auto contact = [](const Shell& a, const Shell& b) {
+    const CellContact found = Group().add(a).add(b).contact();
+    CHECK(Group().add(b).add(a).contact() == found);
+    return found;
+  };
+  const Shell u = u_shape();  // its notch is from x 2 to 4 and from y 2 on
+  CHECK(contact(u, box({2.5, 3, 1}, {3.5, 5, 3})) == CellContact::apart);
+  CHECK(contact(u, box({2, 3, 1}, {3.5, 5, 3})) == CellContact::area);
+  CHECK(contact(u, box({1, 3, 1}, {3.5, 5, 3})) == CellContact::area);
+  CHECK(contact(u, prism({{2, 3}, {3, 2.5}, {3, 3.5}}, 1, 3)) == CellContact::at_points);
+  CHECK(contact(u, box({7, 0, 0}, {8, 1, 1})) == CellContact::apart);
+  const Group hollow =
+      Group().add({cube(10), inside_out(box({2, 2, 2}, {3, 3, 3}))}).add(box({2, 2, 2}, {3, 3, 3}));
+  CHECK(hollow.contact() == CellContact::area);
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sql/bridge.h"
 
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "codec/blob.h"
 #include "codec/page.h"
@@ -14,6 +16,7 @@
 #include "sql/make_value.h"
 #include "sql/reply.h"
 #include "validate/certify.h"
+#include "validate/groups.h"
 #include "validate/report_json.h"
 
 struct wt_engine {
@@ -209,28 +212,78 @@ Status check_acceptance(const Acceptance& acceptance) {
   return Done{};
 }
 
-/// Answers a blob with its value. The exact tests run again, with the tolerances that the blob
-/// states; its proof by tetrahedralization is believed.
-void solid_of_blob(const wt_job& job, const CallLimits& call, wt_reply* reply) {
-  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
-  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
-  const Acceptance& acceptance = decoded->info.acceptance;
+/// The solid of a blob, judged again: the exact tests run with the tolerances that the blob states;
+/// its proof by tetrahedralization is believed. Nothing, and a failure of the reply, if it does not
+/// pass.
+std::optional<ValidSolid> judged(const wt_job& job, const CallLimits& call, const Decoded& decoded,
+                                 wt_reply* reply) {
+  const auto refused = [&](const Error& error) {
+    fail(reply, error);
+    return std::nullopt;
+  };
+  const Acceptance& acceptance = decoded.info.acceptance;
   if (const Status checked = check_acceptance(acceptance); !checked) {
-    return fail(reply, checked.error());
+    return refused(checked.error());
   }
   CertifyOptions options = options_of(job, call);
   options.tolerances = acceptance.tolerances;
   options.proof = Proof::boundary;
   options.ladder.strict = false;
-  const Inspection inspection = certify(decoded->solid, nullptr, options);
-  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
-  if (!inspection.certified) return fail_invalid(inspection.report, reply);
-  const auto order = compare(inspection.certified->solid.solid(), decoded->solid);
-  if (!order) return fail(reply, order.error());
-  if (*order != 0) {
-    return fail(reply, "22023", "the blob has another solid than a valid one: it is inside out");
+  const Inspection inspection = certify(decoded.solid, nullptr, options);
+  if (const Status in_time = call.check(); !in_time) return refused(in_time.error());
+  if (!inspection.certified) {
+    fail_invalid(inspection.report, reply);
+    return std::nullopt;
   }
+  const ValidSolid& solid = inspection.certified->solid;
+  const auto order = compare(solid.solid(), decoded.solid);
+  if (!order) return refused(order.error());
+  if (*order == 0) return solid;
+  return refused(
+      {ErrorCode::not_encodable, "the blob has another solid than a valid one: it is inside out"});
+}
+
+/// Answers a blob with its value.
+void solid_of_blob(const wt_job& job, const CallLimits& call, wt_reply* reply) {
+  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
+  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
+  if (!judged(job, call, *decoded, reply)) return;
   value_into(call, decoded->solid, Bytes(job.bytes, job.bytes + job.size), reply);
+}
+
+/// How the solids of two blobs meet; "apart" after a failure of the reply.
+wt_relation relation_of(const wt_job& job, ByteView other, wt_reply* reply) {
+  const CallLimits call(job);
+  std::vector<ValidSolid> solids;
+  for (const ByteView blob : {bytes_of(job), other}) {
+    const Result<Decoded> decoded = decode(blob, call.of_input());
+    if (!decoded) return fail(reply, call.of_reading(decoded.error())), WT_APART;
+    auto solid = judged(job, call, *decoded, reply);
+    if (!solid) return WT_APART;
+    solids.push_back(*std::move(solid));
+  }
+  const std::array<validate::GroupMember, 2> members{{{&solids[0]}, {&solids[1]}}};
+  const std::array<Index, 2> cells{0, 1};
+  std::array<validate::CellPair, 1> pair{{{0, 1}}};
+  validate::GroupOptions options;
+  options.do_steps_warn = false;
+  options.limits = call.of_input();
+  options.cancel = call.poll();
+  const validate::GroupReport report = validate::check_cells(members, cells, pair, options);
+  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error()), WT_APART;
+  if (!report.findings.empty()) return WT_OVERLAPPING;
+  switch (pair[0].contact) {
+    case validate::CellContact::area:
+      return WT_TOUCHING_BY_AREA;
+    case validate::CellContact::at_points:
+      return WT_TOUCHING_AT_POINTS;
+    case validate::CellContact::apart:
+      return WT_APART;
+    default:
+      break;
+  }
+  fail(reply, "0A000", "the solids have no common grid on which they can be compared");
+  return WT_APART;
 }
 
 void solid_into(const wt_job& job, wt_reply* reply) {
@@ -341,6 +394,15 @@ void wt_bridge_solid_of_wkt(const wt_job* job, wt_reply* reply) noexcept {
 
 void wt_bridge_translate(const wt_job* job, const double way[3], wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::translate_into(*job, way, reply); });
+}
+
+wt_relation wt_bridge_relation(const wt_job* job, const uint8_t* other, size_t other_size,
+                               wt_reply* reply) noexcept {
+  wt_relation relation = WT_APART;
+  guarded(reply, [&] {
+    relation = watertight::sql::relation_of(*job, {other, other_size}, reply);
+  });
+  return relation;
 }
 
 void wt_bridge_wkt(const wt_job* job, wt_reply* reply) noexcept {

@@ -123,6 +123,18 @@ void wt_bridge_translate(const wt_job* job, const double way[3],
 /** Answers a blob with WKT, UTF-8. */
 void wt_bridge_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 
+/** How two solids meet. */
+typedef enum wt_relation {
+  WT_APART,
+  WT_TOUCHING_AT_POINTS, /* points or edges in common */
+  WT_TOUCHING_BY_AREA,   /* areas in common, as of party walls */
+  WT_OVERLAPPING         /* points inside both */
+} wt_relation;
+/** Compares the solids of two blobs, of the job and of `other`, exactly. They are in one reference
+ *  system, which is not checked. */
+wt_relation wt_bridge_relation(const wt_job* job, const uint8_t* other, size_t other_size,
+                               wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
 /** The measures of a solid that take its coordinates. */
 typedef struct wt_measures {
   double box_min[3]; /* in units of the reference system */

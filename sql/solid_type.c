@@ -392,6 +392,56 @@ wt_solid_contains_place(PG_FUNCTION_ARGS)
 	PG_RETURN_BOOL(reply->truth);
 }
 
+/* How two solids meet. Those whose boxes are apart are not looked at. */
+static wt_relation
+relation_of_arguments(FunctionCallInfo fcinfo)
+{
+	SolidFacts	facts[2];
+	wt_reply   *reply;
+	wt_job		job;
+	wt_job		other;
+	wt_relation relation;
+
+	for (int i = 0; i < 2; ++i)
+		read_solid_facts(PG_GETARG_DATUM(i), &facts[i]);
+	if (facts[0].srid != facts[1].srid)
+		ereport(ERROR,
+				(errcode(ERRCODE_INVALID_PARAMETER_VALUE),
+				 errmsg("the solids are in different reference systems"),
+				 errdetail("They are in %u and %u.", facts[0].srid, facts[1].srid)));
+	for (int axis = 0; axis < 3; ++axis)
+		for (int i = 0; i < 2; ++i)
+			if (facts[i].box[axis] > facts[1 - i].box[3 + axis])
+				return WT_APART;
+	reply = new_reply();
+	job = job_on(PG_GETARG_DATUM(0));
+	other = job_on(PG_GETARG_DATUM(1));
+	relation = wt_bridge_relation(&job, other.bytes, other.size, reply);
+	check_reply(reply);
+	return relation;
+}
+
+PG_FUNCTION_INFO_V1(wt_solid_overlaps);
+Datum
+wt_solid_overlaps(PG_FUNCTION_ARGS)
+{
+	PG_RETURN_BOOL(relation_of_arguments(fcinfo) == WT_OVERLAPPING);
+}
+
+PG_FUNCTION_INFO_V1(wt_solid_intersects);
+Datum
+wt_solid_intersects(PG_FUNCTION_ARGS)
+{
+	PG_RETURN_BOOL(relation_of_arguments(fcinfo) != WT_APART);
+}
+
+PG_FUNCTION_INFO_V1(wt_solid_shares_area);
+Datum
+wt_solid_shares_area(PG_FUNCTION_ARGS)
+{
+	PG_RETURN_BOOL(relation_of_arguments(fcinfo) == WT_TOUCHING_BY_AREA);
+}
+
 /* The facets of a solid, as rows. */
 PG_FUNCTION_INFO_V1(wt_solid_faces);
 Datum

@@ -129,6 +129,17 @@ CREATE FUNCTION wt_contains(solid solid, x float8, y float8, z float8) RETURNS b
   AS 'MODULE_PATHNAME', 'wt_solid_contains_place' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
 COMMENT ON FUNCTION wt_contains(solid, float8, float8, float8) IS
   'whether a place is inside a solid or on its boundary, decided exactly; a place in a cavity is not inside';
+CREATE FUNCTION wt_overlaps(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_overlaps' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
+COMMENT ON FUNCTION wt_overlaps(solid, solid) IS 'whether a point is inside both solids, decided exactly';
+CREATE FUNCTION wt_intersects(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_intersects' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
+COMMENT ON FUNCTION wt_intersects(solid, solid) IS
+  'whether two solids have a point in common, on their boundaries too, decided exactly';
+CREATE FUNCTION wt_shares_area(solid, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_shares_area' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
+COMMENT ON FUNCTION wt_shares_area(solid, solid) IS
+  'whether the boundaries of two solids have an area in common, and no point is inside both (a party wall), decided exactly';
 CREATE FUNCTION wt_faces(solid solid, OUT shell integer, OUT facet integer, OUT area float8, OUT normal float8[],
     OUT tilt float8, OUT azimuth float8, OUT centroid float8[], OUT planarity float8, OUT rings integer)
   RETURNS SETOF record

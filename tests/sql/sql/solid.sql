@@ -110,3 +110,12 @@ SELECT name, wt_bbox(wt_translate(shape, 0.1, -0.2, 1e6)) AS bbox, wt_volume(wt_
 FROM town ORDER BY name;
 SELECT wt_translate(shape, 1e-300, 0, 0) FROM town WHERE name = 'cube';
 SELECT wt_translate(shape, 'nan', 0, 0) FROM town WHERE name = 'cube';
+
+-- How two solids meet.
+CREATE TABLE pairs AS SELECT shape AS a, wt_translate(shape, x, y, z) AS b, x, y, z FROM town,
+  (VALUES (0::float8, 0::float8, 0::float8), (0.5, 0, 0), (1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0.5, 0.25), (1.0001, 0, 0), (0.9999, 0, 0), (3, 0, 0)) AS v (x, y, z)
+  WHERE name = 'cube';
+SELECT x, y, z, wt_overlaps(a, b), wt_intersects(a, b), wt_shares_area(a, b), wt_overlaps(a, b) = wt_overlaps(b, a) AND wt_intersects(a, b) = wt_intersects(b, a) AND wt_shares_area(a, b) = wt_shares_area(b, a) AS symmetric FROM pairs ORDER BY x, y, z;
+SELECT wt_overlaps(h.shape, wt_translate(c.shape, 2, 2, 2)) AS in_cavity, wt_shares_area(h.shape, wt_translate(c.shape, 2, 2, 2)) AS against_its_walls, wt_overlaps(h.shape, wt_translate(c.shape, 1.5, 2, 2)) AS through_its_wall
+FROM town h, town c WHERE h.name = 'hollow' AND c.name = 'cube';
+SELECT wt_overlaps(a.shape, b.shape) FROM town a, town b WHERE a.name = 'cube' AND b.name = 'postgis cube';

@@ -155,6 +155,13 @@ struct ServeCommand {
 };
 Exit run(const ServeCommand& command);
 
+struct RowsCommand {
+  std::vector<std::string> files;
+  std::string surfaces = "ignore";  // or "as-solids"
+};
+/// Writes the solids of documents as rows for COPY to standard output.
+Exit run(const RowsCommand& command);
+
 struct KeyCommand {
   std::string name;
   std::string scope;

@@ -124,6 +124,14 @@ done
 echo "$pieces pieces of docs/sql.md do what it says"
 
 if [ -n "$program" ]; then
+  # A file becomes a table.
+  ask guide "CREATE TABLE from_files (feature text, object text, lod text, ewkb bytea)"
+  "$program" rows "$source/examples/delft.city.jsonl" |
+    run "$bin/psql" -X -q -v ON_ERROR_STOP=1 "${connect[@]}" -d guide -c "COPY from_files FROM STDIN"
+  ask guide "CREATE TABLE town AS SELECT feature, object, lod, wt_try_solid(ewkb) AS shape FROM from_files"
+  found=$(ask guide "SELECT count(*), count(shape), count(DISTINCT feature), count(DISTINCT lod), max(wt_srid(shape)) FROM town")
+  [ "$found" = "480|470|159|3|7415" ] || { echo "a file became another table: $found"; exit 1; }
+  echo "a file became a table of 470 solids, and 10 that are refused"
   query() { run "$bin/psql" -X -q -At "${connect[@]}" -d regression -c "$1"; }
   for name in cube pierced hollow; do
     query "SELECT encode(ewkb, 'base64') FROM solids WHERE name = '$name'" |

@@ -308,6 +308,21 @@ TEST_CASE_METHOD(Fixture, "advise prints a row for each number of decimals") {
   CHECK(run("advise none.city.jsonl").status == 2);
 }
 
+TEST_CASE_METHOD(Fixture, "rows are columns for COPY, whatever ids have in them") {
+  // The id has a tab, a backslash and a line feed, as JSON writes them.
+  const std::string text = samples::sequence({samples::feature(R"(a\tb\\c\nd)")});
+  write("in.city.jsonl", text);
+  const Ran rows = run("rows in.city.jsonl");
+  INFO(rows.output);
+  CHECK(rows.status == 0);
+  CHECK(rows.output.starts_with("a\\tb\\\\c\\nd\ta\\tb\\\\c\\nd\t"));
+  CHECK(rows.output.find("\t\\\\x010f0000") != std::string::npos);
+  CHECK(std::ranges::count(rows.output, '\n') == 1);
+  write("cut.city.jsonl", text + "{\n");
+  CHECK(run("rows cut.city.jsonl").status == 1);
+  CHECK(run("rows none.city.jsonl").status == 2);
+}
+
 TEST_CASE_METHOD(Fixture, "a bare blob is read as one solid") {
   write("cube.obj", kCubeObj);
   REQUIRE(run("encode cube.obj --bare -o cube.blob").status == 0);

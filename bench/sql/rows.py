@@ -101,7 +101,8 @@ def timed(server, statement, times=50):
 def measure_queries(server, rows):
     bounds = [float(server.ask(f"SELECT wt_bound(wt_extent(shape), {i}) FROM town")) for i in range(1, 7)]
     wide, deep = bounds[3] - bounds[0], bounds[4] - bounds[1]
-    x, y = bounds[0] + 0.4 * wide, bounds[1] + 0.4 * deep
+    x, y = (float(server.ask(f"SELECT wt_bound(wt_box(shape), {i}) FROM town WHERE id = {rows // 2}")) for i in (1, 2))
+    x, y = x - 0.05 * wide, y - 0.05 * deep  # around one of them
     box = f"wt_box({x}, {y}, -1000, {x + 0.1 * wide}, {y + 0.1 * deep}, 10000)"  # a hundredth of the area
     found = server.ask(f"SELECT count(*) FROM town WHERE shape && {box}")
     for what, statement, times in (

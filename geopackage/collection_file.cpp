@@ -117,21 +117,18 @@ class CollectionRun {
   Status add_findings(const StoredFeature& feature) {
     const auto unpacked = pipeline::unpack(feature, {}, pipeline::Reports::of_unproven);
     if (!unpacked) return unpacked.error();
-    for (report::StoredFinding& finding : report::findings_of(*unpacked)) {
-      const Status added = add_finding(feature.id, std::move(finding));
+    for (const report::StoredFinding& finding : report::findings_of(*unpacked)) {
+      const Status added = add_finding(feature.id, finding);
       if (!added) return added;
     }
     return Done{};
   }
 
-  Status add_finding(const std::string& feature, report::StoredFinding finding) {
+  Status add_finding(const std::string& feature, const report::StoredFinding& finding) {
     std::optional<ShapeBytes> shape;
     if (finding.witness) shape = point_bytes(*finding.witness, srid_);
-    Properties properties{
-        {"feature", Json(feature).dump()},   {"object", Json(finding.object).dump()},
-        {"lod", Json(finding.lod).dump()},   {"code", std::to_string(finding.code)},
-        {"name", Json(finding.name).dump()}, {"severity", Json(finding.severity).dump()}};
-    for (auto& member : finding.members) properties.push_back(std::move(member));
+    Properties properties{{"feature", Json(feature).dump()}};
+    for (auto& property : report::properties_of(finding)) properties.push_back(std::move(property));
     return findings_->add(shape, properties);
   }
 

@@ -52,4 +52,15 @@ std::vector<StoredFinding> findings_of(const pipeline::EncodedFeature& feature) 
   return findings;
 }
 
+std::vector<std::pair<std::string, std::string>> properties_of(const StoredFinding& finding) {
+  std::vector<std::pair<std::string, std::string>> properties{
+      {"object", Json(finding.object).dump()},
+      {"lod", Json(finding.lod).dump()},
+      {"code", std::to_string(finding.code)},
+      {"name", Json(finding.name).dump()},
+      {"severity", Json(finding.severity).dump()}};
+  properties.insert(properties.end(), finding.members.begin(), finding.members.end());
+  return properties;
+}
+
 }  // namespace watertight::report

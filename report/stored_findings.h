@@ -30,4 +30,7 @@ struct StoredFinding {
 /// feature has its reports (pipeline::unpack() with Reports::of_unproven). Cost: linear.
 std::vector<StoredFinding> findings_of(const pipeline::EncodedFeature& feature);
 
+/// Its object, level of detail, code, name and severity, then its members: names, JSON texts.
+std::vector<std::pair<std::string, std::string>> properties_of(const StoredFinding& finding);
+
 }  // namespace watertight::report

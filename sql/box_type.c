@@ -224,7 +224,7 @@ wt_solid_box(PG_FUNCTION_ARGS)
 	PG_RETURN_POINTER(box);
 }
 
-/* Relations of two solids, and of a solid and a box. */
+/* Relations of the boxes of two solids, and of that of a solid and a box. */
 
 #define RELATION(name, type, result) \
 	PG_FUNCTION_INFO_V1(name##_solid); \
@@ -246,10 +246,10 @@ wt_solid_box(PG_FUNCTION_ARGS)
 		PG_RETURN_##type(result); \
 	}
 
-RELATION(wt_solid_overlaps, BOOL, boxes_overlap(&left, &right))
-RELATION(wt_solid_contains, BOOL, box_contains(&left, &right))
-RELATION(wt_solid_within, BOOL, box_contains(&right, &left))
-RELATION(wt_solid_box_distance, FLOAT8, distance_of_boxes(&left, &right))
+RELATION(wt_box_overlaps, BOOL, boxes_overlap(&left, &right))
+RELATION(wt_box_contains, BOOL, box_contains(&left, &right))
+RELATION(wt_box_within, BOOL, box_contains(&right, &left))
+RELATION(wt_box_distance, FLOAT8, distance_of_boxes(&left, &right))
 
 PG_FUNCTION_INFO_V1(wt_box_union);
 Datum

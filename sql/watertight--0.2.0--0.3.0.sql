@@ -147,36 +147,33 @@ CREATE FUNCTION wt_faces(solid solid, OUT shell integer, OUT facet integer, OUT 
 COMMENT ON FUNCTION wt_faces(solid) IS
   'facets of a solid, counted from 0: area, normal, tilt (degrees: 0 a flat roof, 90 a wall), azimuth (clockwise from north, NULL without), centroid, planarity (largest distance of a corner from the fitted plane), rings';
 
--- The findings of a report as rows. The bodies are parsed here, so that they work in any schema and under
--- any search path.
-CREATE FUNCTION wt_findings(ewkb bytea, OUT code integer, OUT name text, OUT severity text, OUT shell integer,
-    OUT facet integer, OUT other_facet integer, OUT witness float8[], OUT measured float8, OUT "limit" float8,
-    OUT unit text, OUT message text)
-  RETURNS SETOF record LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 10000 ROWS 3
+-- Findings as rows. The bodies are parsed here, so that they work in any schema and under any search path.
+CREATE TYPE wt_finding AS (code integer, name text, severity text, shell integer, facet integer, other_facet integer,
+  witness float8[], measured float8, "limit" float8, unit text, message text);
+COMMENT ON TYPE wt_finding IS 'a finding about a solid; facets count from 0, the witness is a place';
+CREATE FUNCTION wt_findings_of(report jsonb) RETURNS SETOF wt_finding
+  LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 10 ROWS 3
 BEGIN ATOMIC
   SELECT (f->>'code')::integer, f->>'name', f->>'severity', (f->'place'->>'shell')::integer,
     (f->'place'->>'facet')::integer, (f->'other'->>'facet')::integer,
     CASE WHEN f ? 'witness' THEN ARRAY[(f->'witness'->>0)::float8, (f->'witness'->>1)::float8, (f->'witness'->>2)::float8] END,
     (f->>'measured')::float8, (f->>'limit')::float8, f->>'unit', f->>'text'
-  FROM wt_validate(wt_findings.ewkb) AS report,
-    LATERAL jsonb_array_elements((report->'errors') || (report->'warnings')) AS f;
+  FROM jsonb_array_elements((report->'errors') || (report->'warnings')) AS f;
 END;
-COMMENT ON FUNCTION wt_findings(bytea) IS
-  'findings about a solid (EWKB) as rows, errors first; facets count from 0, the witness is a place';
-CREATE FUNCTION wt_findings(ewkb bytea, rules jsonb, OUT code integer, OUT name text, OUT severity text, OUT shell integer,
-    OUT facet integer, OUT other_facet integer, OUT witness float8[], OUT measured float8, OUT "limit" float8,
-    OUT unit text, OUT message text)
-  RETURNS SETOF record LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 10000 ROWS 3
+COMMENT ON FUNCTION wt_findings_of(jsonb) IS 'findings of a report of wt_validate as rows, errors first';
+CREATE FUNCTION wt_findings(ewkb bytea) RETURNS SETOF wt_finding
+  LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 10000 ROWS 3
 BEGIN ATOMIC
-  SELECT (f->>'code')::integer, f->>'name', f->>'severity', (f->'place'->>'shell')::integer,
-    (f->'place'->>'facet')::integer, (f->'other'->>'facet')::integer,
-    CASE WHEN f ? 'witness' THEN ARRAY[(f->'witness'->>0)::float8, (f->'witness'->>1)::float8, (f->'witness'->>2)::float8] END,
-    (f->>'measured')::float8, (f->>'limit')::float8, f->>'unit', f->>'text'
-  FROM wt_validate(wt_findings.ewkb, wt_findings.rules) AS report,
-    LATERAL jsonb_array_elements((report->'errors') || (report->'warnings')) AS f;
+  SELECT f.* FROM wt_findings_of(wt_validate(ewkb)) AS f;
+END;
+COMMENT ON FUNCTION wt_findings(bytea) IS 'findings about a solid (EWKB) as rows, errors first';
+CREATE FUNCTION wt_findings(ewkb bytea, rules jsonb) RETURNS SETOF wt_finding
+  LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 10000 ROWS 3
+BEGIN ATOMIC
+  SELECT f.* FROM wt_findings_of(wt_validate(ewkb, rules)) AS f;
 END;
 COMMENT ON FUNCTION wt_findings(bytea, jsonb) IS
-  'findings about a solid (EWKB) by these rules as rows, errors first; facets count from 0, the witness is a place';
+  'findings about a solid (EWKB) by these rules as rows, errors first';
 
 -- Order and equality, by canonical forms.
 CREATE FUNCTION wt_solid_lt(solid, solid) RETURNS boolean
@@ -225,21 +222,21 @@ CREATE OPERATOR CLASS solid_hash_ops DEFAULT FOR TYPE solid USING hash AS
 
 -- Boxes of solids.
 CREATE FUNCTION wt_boxes_overlap(solid, solid) RETURNS boolean
-  AS 'MODULE_PATHNAME', 'wt_solid_overlaps_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+  AS 'MODULE_PATHNAME', 'wt_box_overlaps_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
 CREATE FUNCTION wt_boxes_overlap(solid, wt_box) RETURNS boolean
-  AS 'MODULE_PATHNAME', 'wt_solid_overlaps_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+  AS 'MODULE_PATHNAME', 'wt_box_overlaps_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
 CREATE FUNCTION wt_box_contains(solid, solid) RETURNS boolean
-  AS 'MODULE_PATHNAME', 'wt_solid_contains_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+  AS 'MODULE_PATHNAME', 'wt_box_contains_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
 CREATE FUNCTION wt_box_contains(solid, wt_box) RETURNS boolean
-  AS 'MODULE_PATHNAME', 'wt_solid_contains_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+  AS 'MODULE_PATHNAME', 'wt_box_contains_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
 CREATE FUNCTION wt_box_within(solid, solid) RETURNS boolean
-  AS 'MODULE_PATHNAME', 'wt_solid_within_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+  AS 'MODULE_PATHNAME', 'wt_box_within_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
 CREATE FUNCTION wt_box_within(solid, wt_box) RETURNS boolean
-  AS 'MODULE_PATHNAME', 'wt_solid_within_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+  AS 'MODULE_PATHNAME', 'wt_box_within_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
 CREATE FUNCTION wt_box_distance(solid, solid) RETURNS float8
-  AS 'MODULE_PATHNAME', 'wt_solid_box_distance_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+  AS 'MODULE_PATHNAME', 'wt_box_distance_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
 CREATE FUNCTION wt_box_distance(solid, wt_box) RETURNS float8
-  AS 'MODULE_PATHNAME', 'wt_solid_box_distance_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+  AS 'MODULE_PATHNAME', 'wt_box_distance_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
 COMMENT ON FUNCTION wt_boxes_overlap(solid, solid) IS 'implementation of the operator &&';
 COMMENT ON FUNCTION wt_boxes_overlap(solid, wt_box) IS 'implementation of the operator &&';
 COMMENT ON FUNCTION wt_box_contains(solid, solid) IS 'implementation of the operator @>';

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "report/stored_findings.h"
-#include "server/json_answers.h"
 #include "tiles/pin.h"
 
 namespace watertight::server {
@@ -15,19 +14,6 @@ tiles::Frame::Position middle_of(const std::optional<store::StoredBox>& box) {
   if (!box) return middle;
   for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] = (box->min[axis] + box->max[axis]) / 2;
   return middle;
-}
-
-tiles::FeatureMesh mesh_of_finding(const std::string& id, report::StoredFinding finding) {
-  tiles::FeatureMesh mesh;
-  mesh.id = id;
-  mesh.type = "finding";
-  mesh.properties = {{"object", Json(finding.object).dump()},
-                     {"lod", Json(finding.lod).dump()},
-                     {"code", std::to_string(finding.code)},
-                     {"name", Json(finding.name).dump()},
-                     {"severity", Json(finding.severity).dump()}};
-  for (auto& member : finding.members) mesh.properties.push_back(std::move(member));
-  return mesh;
 }
 
 }  // namespace
@@ -47,8 +33,11 @@ Result<std::vector<tiles::FeatureMesh>> pins_of(StoredFeature stored, std::uint3
   std::vector<tiles::FeatureMesh> pins;
   if (!placed) return pins;
   for (std::size_t i = 0; i < findings.size(); ++i) {
-    pins.push_back(mesh_of_finding(feature->id, std::move(findings[i])));
-    tiles::add_pin(pins.back(), (*placed)[i]);
+    tiles::FeatureMesh& pin = pins.emplace_back();
+    pin.id = feature->id;
+    pin.type = "finding";
+    pin.properties = report::properties_of(findings[i]);
+    tiles::add_pin(pin, (*placed)[i]);
   }
   return pins;
 }

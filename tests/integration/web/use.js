@@ -16,9 +16,20 @@ const kPlace = [0x9b, 0x30, 0xff];
 const kFacet = [0xbb, 0x57, 0x63];  // red over a wall
 const kPin = [0xd0, 0x24, 0x38];
 const kChosen = [0xff, 0xd2, 0x3f];
+const kRoof = [0x9f, 0x50, 0x3e];
+const kTetrahedron = [0x8f, 0xb8, 0xde];
+
+const kPatience = 30_000;  // milliseconds until a picture must be what is expected
 
 const seen = [];
 const check = (isRight, name) => seen.push({isRight: Boolean(isRight), name});
+
+/// Checks what becomes true once all is loaded and drawn: asks until it is, or until patience ends.
+async function eventually(isRight, name) {
+  const end = Date.now() + kPatience;
+  while (!await isRight() && Date.now() < end) await page.waitForTimeout(250);
+  check(await isRight(), name);
+}
 
 const executablePath = ['/usr/bin/chromium', '/usr/bin/google-chrome'].find(existsSync);
 const browser = await chromium.launch({
@@ -62,9 +73,17 @@ const pixels = (colour) => page.evaluate((wanted) => {
   };
 }, colour);
 
-const isMiddle = ({x, y}) => Math.abs(x - 0.5) < kNearMiddle && Math.abs(y - 0.5) < kNearMiddle;
+const isSeen = async (colour, share) => (await pixels(colour)).share > share;
 
-const isAbove = ({x, y}) => Math.abs(x - 0.5) < kNearMiddle && y < 0.5 && y > 0.2;
+async function isInMiddle(colour, least = 0) {
+  const {share, x, y} = await pixels(colour);
+  return share > least && Math.abs(x - 0.5) < kNearMiddle && Math.abs(y - 0.5) < kNearMiddle;
+}
+
+async function isAboveMiddle(colour, least) {
+  const {share, x, y} = await pixels(colour);
+  return share > least && Math.abs(x - 0.5) < kNearMiddle && y < 0.5 && y > 0.2;
+}
 
 /// The picture as text, to see whether it changed.
 const picture = () => page.evaluate(async () => {
@@ -72,13 +91,13 @@ const picture = () => page.evaluate(async () => {
   return document.querySelector('.stage canvas').toDataURL();
 });
 
-/// Waits until the picture stays as it is.
+/// Waits until the picture stays as it is for a second.
 async function quiet() {
-  let before = await picture();
-  for (let i = 0; i < 60; ++i) {
+  let before = '', same = 0;
+  for (const end = Date.now() + kPatience; same < 4 && Date.now() < end;) {
     await page.waitForTimeout(250);
     const now = await picture();
-    if (now === before) return;
+    same = now === before ? same + 1 : 0;
     before = now;
   }
 }
@@ -103,10 +122,8 @@ async function judgeAndStore() {
   await page.getByText('invalid.city.jsonl is invalid: 11 solids.').waitFor();
   await page.getByRole('button', {name: 'Next finding'}).focus();
   await page.keyboard.press('Enter');
-  await quiet();
-  const [place, facet] = [await pixels(kPlace), await pixels(kFacet)];
-  check(place.share > 0 && isMiddle(place), 'the camera flies to the place of the finding');
-  check(facet.share > 0.01, 'its facet is red');
+  await eventually(() => isInMiddle(kPlace), 'the camera flies to the place of the finding');
+  await eventually(() => isSeen(kFacet, 0.01), 'its facet is red');
   check(
       (await page.locator('.said').first().textContent()).startsWith('Finding 1 of '),
       'the finding is said');
@@ -151,13 +168,14 @@ async function longFile() {
   await page.getByRole('button', {name: 'Store', exact: true}).click();
   await page.getByRole('link', {name: 'as this job'}).click();
   await page.getByRole('cell', {name: 'successful', exact: true}).waitFor();
-  check(
-      await page.getByRole('row', {name: 'Features stored 159'}).isVisible(),
+  await eventually(
+      () => page.getByRole('row', {name: 'Features stored 159'}).isVisible(),
       'an archive is stored as a job');
   await shot('job');
   await accessible('a job');
   await page.goto(`${service}jobs`);
-  check(await page.getByRole('link', {name: 'town.city.jsonl.gz'}).isVisible(), 'jobs are listed');
+  await eventually(
+      () => page.getByRole('link', {name: 'town.city.jsonl.gz'}).isVisible(), 'jobs are listed');
   await accessible('the list of jobs');
 }
 
@@ -166,76 +184,76 @@ async function otherFormats() {
   await page.setInputFiles('#file', `${examples}/../tests/golden/findings/103.gml`);
   await page.getByText('103.gml is invalid').waitFor();
   await page.getByRole('button', {name: 'Next finding'}).click();
-  await quiet();
-  check(isMiddle(await pixels(kPlace)), 'the finding of a GML document is flown to');
-  check((await pixels(kFacet)).share > 0.01, 'its facet is red');
+  await eventually(() => isInMiddle(kPlace), 'the finding of a GML document is flown to');
+  await eventually(() => isSeen(kFacet, 0.01), 'its facet is red');
 }
 
 async function list() {
   await page.goto(`${service}collections`);
   await accessible('the list of collections');
   await page.getByLabel('Only rows with').fill('DELF');
-  const rows = await page.locator('table tr:visible').count();
-  check(rows === 2, 'the list of collections is filtered');
+  await eventually(
+      async () => await page.locator('table tr:visible').count() === 2,
+      'the list of collections is filtered');
 }
 
 async function city() {
   await page.goto(`${service}collections/delft`);
   await page.waitForFunction(() => document.querySelector('.said')?.textContent === '');
-  await quiet();
-  check((await pixels([0x9f, 0x50, 0x3e])).share > 0.005, 'roofs are seen');
+  await eventually(() => isSeen(kRoof, 0.005), 'roofs are seen');
   await shot('city');
   await accessible('a collection');
   await page.getByLabel('From above').check();
-  await quiet();
-  check((await pixels([0x9f, 0x50, 0x3e])).share > 0.005, 'roofs are seen from above');
+  await eventually(() => isSeen(kRoof, 0.005), 'roofs are seen from above');
   await shot('city-from-above');
   await page.getByLabel('From above').uncheck();
   await page.getByRole('button', {name: 'Next finding'}).click();
   await page.getByText('1 of 7 that are not proven').waitFor();
+  await eventually(
+      () => isInMiddle(kChosen, 0.01), 'the next feature with findings is flown to');
   await quiet();
   const chosen = await pixels(kChosen);
-  check(chosen.share > 0.01 && isMiddle(chosen), 'the next feature with findings is flown to');
   await shot('city-finding');
   await page.getByLabel('Not proven in red').uncheck();
   await quiet();
   const without = (await pixels(kPin)).share;
   await page.getByLabel('Pins of findings').check();
-  await quiet();
-  const pins = await pixels(kPin);
-  check(pins.share > without + 0.0003 && isAbove(pins), 'a pin stands over what was flown to');
+  await eventually(
+      () => isAboveMiddle(kPin, without + 0.0003), 'a pin stands over what was flown to');
   await shot('city-pins');
   await page.getByLabel('Pins of findings').uncheck();
-  await quiet();
-  check(Math.abs((await pixels(kPin)).share - without) < 1e-4, 'pins are switched off');
+  await eventually(
+      async () => Math.abs((await pixels(kPin)).share - without) < 1e-4, 'pins are switched off');
   await page.getByLabel('Not proven in red').check();
   await quiet();
   const id = await page.locator('.side h2').textContent();
   const box = await page.locator('.stage canvas').boundingBox();
   await page.mouse.click(box.x + box.width * chosen.x, box.y + box.height * chosen.y);
   await quiet();
-  check(await page.locator('.side h2').textContent() === id, 'a click finds what is seen there');
+  check(
+      await page.locator('.side h2').textContent() === id, 'a click finds what is seen there');
   const before = await picture();
   await page.locator('.stage canvas').focus();
   await page.keyboard.press('ArrowLeft');
+  await eventually(async () => await picture() !== before, 'keys turn');
+  await quiet();
   const turned = await picture();
   await page.keyboard.press('+');
-  check(turned !== before && await picture() !== turned, 'keys turn and zoom');
+  await eventually(async () => await picture() !== turned, 'keys zoom');
   await page.locator('.side li a').first().click();
   await page.waitForURL('**/items/**');
   await page.getByText('Finding 1 of ').waitFor();
-  await quiet();
-  check((await pixels(kPlace)).share > 0, 'the page of a feature shows its finding');
+  await eventually(() => isSeen(kPlace, 0), 'the page of a feature shows its finding');
   await shot('item');
   await accessible('a feature');
+  await quiet();
   const whole = await picture();
   await page.getByLabel('Cut at this height').fill('40');
-  check(await picture() !== whole, 'a cut takes away what is above');
+  await eventually(async () => await picture() !== whole, 'a cut takes away what is above');
   await page.goto(`${service}collections/delft/items/NL.IMBAG.Pand.0503100000018420`);
   await page.getByLabel('Inside and bytes').check();
   await page.getByText(/[1-9]\d* tetrahedra/).waitFor();
-  await quiet();
-  check((await pixels([0x8f, 0xb8, 0xde])).share > 0.001, 'tetrahedra are seen');
+  await eventually(() => isSeen(kTetrahedron, 0.001), 'tetrahedra are seen');
   await shot('inside');
   await accessible('the inside of a feature');
 }

@@ -2,45 +2,13 @@
 #include "geometry/mass/mass.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <vector>
 
-#include "geometry/lattice/grid_number.h"
-#include "geometry/predicates/exact_quotient.h"
+#include "geometry/lattice/rational_lattice.h"
 #include "geometry/predicates/rational_point.h"
 
 namespace watertight::geometry {
 namespace {
-
-mpq_class rational(const GridNumber& number, unsigned long radix) {
-  mpz_class power;
-  mpz_ui_pow_ui(power.get_mpz_t(), radix, static_cast<unsigned long>(std::abs(number.exponent)));
-  const mpz_class mantissa(static_cast<long>(number.mantissa));
-  mpq_class value = number.exponent < 0 ? mpq_class(mantissa, power) : mpq_class(mantissa * power);
-  value.canonicalize();
-  return value;
-}
-
-unsigned long radix_of(const Lattice& lattice) {
-  return lattice.kind == LatticeKind::binary ? 2 : 10;
-}
-
-mpq_class step_of(const Lattice& lattice, std::size_t axis) {
-  return rational(lattice.step[axis], radix_of(lattice));
-}
-
-mpq_class origin_of(const Lattice& lattice, std::size_t axis) {
-  return rational(lattice.origin[axis], radix_of(lattice));
-}
-
-/// A coordinate in world units as one of the lattice. Doubles are decimals, except where the
-/// coordinates of the solid are doubles themselves.
-mpq_class lattice_coordinate(const Lattice& lattice, std::size_t axis, double coordinate) {
-  const mpq_class world = lattice.kind == LatticeKind::decimal
-                              ? rational(shortest_decimal(coordinate), 10)
-                              : mpq_class(coordinate);
-  return (world - origin_of(lattice, axis)) / step_of(lattice, axis);
-}
 
 /// The vertices of a solid in lattice coordinates, exactly.
 std::vector<RationalPoint> rational_vertices(const Solid& solid) {
@@ -50,10 +18,6 @@ std::vector<RationalPoint> rational_vertices(const Solid& solid) {
     vertices.push_back({mpq_class(p.x), mpq_class(p.y), mpq_class(p.z)});
   }
   return vertices;
-}
-
-double nearest(const mpq_class& value) {
-  return nearest_quotient(value.get_num(), value.get_den(), 0);
 }
 
 /// Twice the area of a triangle in the plane of x and y, positive if it faces up.

@@ -6,7 +6,7 @@
 
 #include "geometry/mass/mass.h"
 #include "geometry/measures.h"
-#include "tests/unit/geometry/solids.h"
+#include "tests/unit/geometry/meshes.h"
 
 namespace watertight::test {
 namespace {
@@ -19,42 +19,6 @@ Lattice decimetres() {
   lattice.step = {GridNumber{1, -1}, GridNumber{1, -1}, GridNumber{1, -1}};
   lattice.origin = {GridNumber{5, 2}, GridNumber{-7, 0}, GridNumber{25, -2}};
   return lattice;
-}
-
-/// A solid of triangles.
-struct Mesh {
-  Solid solid;
-  std::vector<Triangle> triangles;
-};
-
-Mesh mesh_of(std::vector<Point> vertices, const std::vector<Triangle>& triangles, Lattice lattice) {
-  geometry::SolidArrays arrays;
-  arrays.vertices = std::move(vertices);
-  for (const Triangle& triangle : triangles) {
-    arrays.ring_vertices.insert(arrays.ring_vertices.end(), triangle.begin(), triangle.end());
-    arrays.end_ring();
-    arrays.end_facet();
-  }
-  arrays.end_shell();
-  auto solid = Solid::make(std::move(arrays), lattice, 0);
-  REQUIRE(solid.has_value());
-  return {*std::move(solid), triangles};
-}
-
-Mesh tetrahedron(const Point& a, const Point& b, const Point& c, const Point& d, Lattice lattice) {
-  return mesh_of({a, b, c, d}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}, lattice);
-}
-
-Mesh random_tetrahedron(std::mt19937& random, Lattice lattice) {
-  std::uniform_int_distribution<int> place(0, 1'000'000);
-  for (;;) {
-    const auto point = [&] {
-      return Point{static_cast<double>(place(random)), static_cast<double>(place(random)),
-                   static_cast<double>(place(random))};
-    };
-    Mesh mesh = tetrahedron(point(), point(), point(), point(), lattice);
-    if (geometry::volume_sign(mesh.solid.vertices(), mesh.triangles) > 0) return mesh;
-  }
 }
 
 /// The same mesh upside down: z becomes -z, triangles are turned over.

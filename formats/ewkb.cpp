@@ -20,6 +20,7 @@ constexpr std::uint32_t kHasZ = 0x80000000;
 constexpr std::uint32_t kHasM = 0x40000000;
 constexpr std::uint32_t kHasSrid = 0x20000000;
 constexpr std::uint32_t kPolygon = 3;
+constexpr std::uint32_t kMultiPolygon = 6;
 constexpr std::uint32_t kPolyhedralSurface = 15;
 constexpr std::uint32_t kTin = 16;
 constexpr std::uint32_t kTriangle = 17;
@@ -200,9 +201,7 @@ void write_ring(ByteWriter& out, const Solid& solid, Index ring) {
   if (!vertices.empty()) write_point(vertices.front());
 }
 
-void write_shell(ByteWriter& out, const Solid& solid, Index shell, std::uint32_t srid) {
-  write_head(out, kPolyhedralSurface, srid);
-  const IndexRange facets = solid.facets_of(shell);
+void write_facets(ByteWriter& out, const Solid& solid, IndexRange facets) {
   out.u32(facets.size());
   for (Index facet = facets.begin; facet < facets.end; ++facet) {
     write_head(out, kPolygon, 0);
@@ -210,6 +209,11 @@ void write_shell(ByteWriter& out, const Solid& solid, Index shell, std::uint32_t
     out.u32(rings.size());
     for (Index ring = rings.begin; ring < rings.end; ++ring) write_ring(out, solid, ring);
   }
+}
+
+void write_shell(ByteWriter& out, const Solid& solid, Index shell, std::uint32_t srid) {
+  write_head(out, kPolyhedralSurface, srid);
+  write_facets(out, solid, solid.facets_of(shell));
 }
 
 }  // namespace
@@ -242,6 +246,13 @@ Bytes write_ewkb(const Solid& solid) {
     out.u32(solid.shell_count());
     for (Index shell = 0; shell < solid.shell_count(); ++shell) write_shell(out, solid, shell, 0);
   }
+  return std::move(out).bytes();
+}
+
+Bytes write_ewkb_of_boundary(const Solid& solid) {
+  ByteWriter out;
+  write_head(out, kMultiPolygon, solid.srid());
+  write_facets(out, solid, {0, solid.facet_count()});
   return std::move(out).bytes();
 }
 

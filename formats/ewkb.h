@@ -14,6 +14,8 @@ Result<SubmittedSolid> read_ewkb(ByteView bytes, const Limits& limits = {});
 Result<SubmittedSolid> read_wkt(std::string_view text, const Limits& limits = {});
 /// Writes the doubles nearest to the exact world coordinates, and closed rings.
 Bytes write_ewkb(const Solid& solid);
+/// The facets of all shells as one MULTIPOLYGON Z, for programs that know no solids.
+Bytes write_ewkb_of_boundary(const Solid& solid);
 std::string write_wkt(const Solid& solid);
 
 }  // namespace watertight::formats

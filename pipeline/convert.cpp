@@ -3,7 +3,7 @@
 
 #include "formats/gml/city/city.h"
 #include "pipeline/pipeline.h"
-#include "tessellate/facets.h"
+#include "tessellate/without_holes.h"
 
 namespace watertight::pipeline {
 namespace {
@@ -13,43 +13,6 @@ bool has_holes(const Solid& solid) {
     if (solid.rings_of(facet).size() > 1) return true;
   }
   return false;
-}
-
-void append_ring(SolidArrays& arrays, std::span<const Index> ring) {
-  arrays.ring_vertices.insert(arrays.ring_vertices.end(), ring.begin(), ring.end());
-  arrays.end_ring();
-}
-
-/// The solid with each facet that has holes replaced by its triangles.
-Result<Solid> without_holes(const Solid& source) {
-  const Solid solid = geometry::merge_equal_vertices(source).solid;
-  const tessellate::FacetTriangles triangles = tessellate::triangulate_facets(solid);
-  SolidArrays arrays;
-  arrays.vertices.assign(solid.vertices().begin(), solid.vertices().end());
-  for (Index shell = 0; shell < solid.shell_count(); ++shell) {
-    const IndexRange facets = solid.facets_of(shell);
-    for (Index facet = facets.begin; facet < facets.end; ++facet) {
-      const IndexRange rings = solid.rings_of(facet);
-      if (rings.size() <= 1) {
-        for (Index ring = rings.begin; ring < rings.end; ++ring) {
-          append_ring(arrays, solid.ring(ring));
-        }
-        arrays.end_facet();
-        continue;
-      }
-      if (triangles.state[facet] != tessellate::FacetState::triangulated) {
-        return Error{ErrorCode::not_encodable,
-                     "facet " + std::to_string(facet) +
-                         " has holes that cannot be triangulated (its rings are not simple)"};
-      }
-      for (Index i = triangles.first[facet]; i < triangles.first[facet + 1]; ++i) {
-        append_ring(arrays, triangles.triangles[i]);
-        arrays.end_facet();
-      }
-    }
-    arrays.end_shell();
-  }
-  return Solid::make(std::move(arrays), solid.lattice(), solid.srid());
 }
 
 /// A city model with its closed surfaces as solids, and the notes that it had.
@@ -82,7 +45,7 @@ Result<Bytes> convert_document(const Document& document, Format format) {
   for (Feature& feature : converted.features) {
     for (SubmittedSolid& submitted : feature.solids) {
       if (!has_holes(submitted.solid)) continue;
-      auto solid = without_holes(submitted.solid);
+      auto solid = tessellate::without_holes(submitted.solid);
       if (!solid) {
         Error error = std::move(solid).error();
         error.pointer = submitted.source.pointer;

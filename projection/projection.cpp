@@ -22,9 +22,9 @@ using Object = std::unique_ptr<PJ, Destroy>;
 
 constexpr int kPointsOfAnEdge = 21;  // where the edges of a rectangle are followed
 
-const char* name_of(System system) {
-  // With EPSG's name PROJ takes EPSG's operations, as map programs do. Axes are put in order below.
-  return system == System::longitude_latitude ? "EPSG:4326" : "EPSG:3857";
+std::uint32_t code_of(System system) {
+  // With EPSG's code PROJ takes EPSG's operations, as map programs do. Axes are put in order below.
+  return system == System::longitude_latitude ? 4326 : 3857;
 }
 
 void be_silent(void* /*user*/, int /*level*/, const char* /*message*/) {}
@@ -40,10 +40,10 @@ class Library {
   PJ_CONTEXT* context() const { return context_.get(); }
 
   /// The transformation from an EPSG system to another; null if there is none.
-  PJ* find(std::uint32_t srid, System system) {
+  PJ* find(std::uint32_t from, std::uint32_t to) {
     if (made_.size() >= kMostKept) made_.clear();
-    const auto [place, is_new] = made_.try_emplace({srid, system});
-    if (is_new) place->second = make(srid, system);
+    const auto [place, is_new] = made_.try_emplace({from, to});
+    if (is_new) place->second = make(from, to);
     return place->second.get();
   }
 
@@ -97,9 +97,9 @@ class Library {
     }
   }
 
-  Object make(std::uint32_t srid, System system) const {
-    const Object source = horizontal(srid);
-    const Object target(proj_create(context(), name_of(system)));
+  Object make(std::uint32_t from, std::uint32_t to) const {
+    const Object source = horizontal(from);
+    const Object target = horizontal(to);
     if (!source || !target) return nullptr;
     const Object change(
         proj_create_crs_to_crs_from_pj(context(), source.get(), target.get(), nullptr, nullptr));
@@ -108,7 +108,7 @@ class Library {
   }
 
   Context context_;
-  std::map<std::pair<std::uint32_t, System>, Object> made_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Object> made_;
   std::map<std::uint32_t, bool> north_first_;
   Object earth_centred_;
 };
@@ -118,20 +118,20 @@ Library& library() {
   return library;
 }
 
-Error no_transformation(std::uint32_t srid, System system) {
-  return {ErrorCode::unsupported, "there is no transformation from EPSG:" + std::to_string(srid) +
-                                      " to " + name_of(system)};
+Error no_transformation(std::uint32_t from, std::uint32_t to) {
+  return {ErrorCode::unsupported, "there is no transformation from EPSG:" + std::to_string(from) +
+                                      " to EPSG:" + std::to_string(to)};
 }
 
-Error outside(std::uint32_t srid, System system) {
-  return {ErrorCode::unsupported, std::string("a position has no place in both EPSG:") +
-                                      std::to_string(srid) + " and " + name_of(system)};
+Error outside(std::uint32_t from, std::uint32_t to) {
+  return {ErrorCode::unsupported, "a position has no place in both EPSG:" + std::to_string(from) +
+                                      " and EPSG:" + std::to_string(to)};
 }
 
 Result<Rectangle> bounds(std::uint32_t srid, System system, PJ_DIRECTION direction,
                          const Rectangle& rectangle) {
-  PJ* change = library().find(srid, system);
-  if (change == nullptr) return no_transformation(srid, system);
+  PJ* change = library().find(srid, code_of(system));
+  if (change == nullptr) return no_transformation(srid, code_of(system));
   Rectangle result;
   const int is_done =
       proj_trans_bounds(library().context(), change, direction, rectangle.min[0], rectangle.min[1],
@@ -140,22 +140,26 @@ Result<Rectangle> bounds(std::uint32_t srid, System system, PJ_DIRECTION directi
   proj_errno_reset(change);
   const bool is_finite = std::isfinite(result.min[0]) && std::isfinite(result.min[1]) &&
                          std::isfinite(result.max[0]) && std::isfinite(result.max[1]);
-  if (is_done == 0 || !is_finite) return outside(srid, system);
+  if (is_done == 0 || !is_finite) return outside(srid, code_of(system));
   return result;
 }
 
 }  // namespace
 
 Status transform(std::uint32_t srid, System system, std::span<Position> positions) {
+  return transform_between(srid, code_of(system), positions);
+}
+
+Status transform_between(std::uint32_t from, std::uint32_t to, std::span<Position> positions) {
   if (positions.empty()) return Done{};
-  PJ* change = library().find(srid, system);
-  if (change == nullptr) return no_transformation(srid, system);
+  PJ* change = library().find(from, to);
+  if (change == nullptr) return no_transformation(from, to);
   Position& first = positions.front();
   proj_trans_generic(change, PJ_FWD, &first[0], sizeof(Position), positions.size(), &first[1],
                      sizeof(Position), positions.size(), nullptr, 0, 0, nullptr, 0, 0);
   proj_errno_reset(change);
   for (const Position& position : positions) {
-    if (!std::isfinite(position[0]) || !std::isfinite(position[1])) return outside(srid, system);
+    if (!std::isfinite(position[0]) || !std::isfinite(position[1])) return outside(from, to);
   }
   return Done{};
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Coordinates of EPSG systems as longitude and latitude, and back, by PROJ. For display and for
-// searches only: nothing is decided or stored by such coordinates.
+// Coordinates of EPSG systems as longitude and latitude, and back, and in other systems, by PROJ.
+// Nothing about a solid is decided by such coordinates; one that was moved to them is a new solid,
+// and is judged anew.
 #pragma once
 
 #include <array>
@@ -35,6 +36,9 @@ enum class System : std::uint8_t {
 /// positions are then of no use. Cost: linear; some milliseconds more for the first call of a
 /// thread.
 Status transform(std::uint32_t srid, System system, std::span<Position> positions);
+
+/// The same between two EPSG systems, longitude first in geographic ones.
+Status transform_between(std::uint32_t from, std::uint32_t to, std::span<Position> positions);
 
 /// Changes longitudes, latitudes (degrees) and heights above the ellipsoid of WGS 84 (metres) into
 /// the Cartesian coordinates of EPSG:4978: metres from the centre of the Earth. Cost: linear.

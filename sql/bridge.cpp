@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sql/bridge.h"
 
-#include <array>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -11,95 +10,14 @@
 #include "codec/blob.h"
 #include "codec/page.h"
 #include "formats/ewkb.h"
-#include "geometry/lattice/moved_lattice.h"
 #include "sql/info_json.h"
+#include "sql/judge.h"
 #include "sql/make_value.h"
 #include "sql/reply.h"
-#include "validate/certify.h"
-#include "validate/groups.h"
 #include "validate/report_json.h"
-
-struct wt_engine {
-  watertight::delaunay::EngineWorkers workers;
-};
 
 namespace watertight::sql {
 namespace {
-
-// The most findings that a detail names; wt_validate gives the whole report.
-constexpr std::size_t kFindingsShown = 20;
-
-struct Examined {
-  SubmittedSolid submitted;
-  Inspection inspection;
-};
-
-wt_rule_choice rules_of(const wt_job& job) {
-  return job.rules == nullptr ? wt_default_rules() : *job.rules;
-}
-
-/// The rules of a job as options of the validator.
-CertifyOptions options_of(const wt_job& job, const CallLimits& call) {
-  CertifyOptions options;
-  options.limits = call.of_input();
-  const wt_rule_choice rules = rules_of(job);
-  options.tolerances.planarity_metres = rules.planarity;
-  options.tolerances.planarity_degrees = rules.planarity_angle;
-  options.proof = rules.is_boundary_enough ? Proof::boundary : Proof::tetrahedralization;
-  options.ladder.strict = rules.is_strict;
-  options.ladder.cancel = call.poll();
-  options.ladder.memory_in_engine = call.memory_bytes();
-  return options;
-}
-
-/// Certifies a solid that was read. Nothing, and a failure of the reply, unless the verdict is
-/// valid or invalid.
-std::optional<Examined> certify_read(const wt_job& job, const CallLimits& call,
-                                     Result<SubmittedSolid> submitted, wt_reply* reply) {
-  if (!submitted) {
-    fail(reply, call.of_reading(std::move(submitted).error()));
-    return std::nullopt;
-  }
-  CertifyOptions options = options_of(job, call);
-  options.rounded = submitted->rounded;
-  Inspection inspection =
-      certify(submitted->solid, job.engine == nullptr ? nullptr : &job.engine->workers, options);
-  if (const Status in_time = call.check(); !in_time) {
-    fail(reply, in_time.error());
-    return std::nullopt;
-  }
-  if (inspection.report.verdict == Verdict::undecided) {
-    fail(reply, WATERTIGHT_UNDECIDED,
-         "the solid is undecided: " + inspection.report.undecided_reason);
-    return std::nullopt;
-  }
-  return Examined{std::move(*submitted), std::move(inspection)};
-}
-
-/// Reads EWKB and certifies it by the rules of the job.
-std::optional<Examined> examine(const wt_job& job, const CallLimits& call, wt_reply* reply) {
-  return certify_read(job, call, formats::read_ewkb(bytes_of(job), call.of_input()), reply);
-}
-
-/// The errors of a report, one a line, the first ones only.
-std::string errors_of(const Report& report) {
-  std::string lines;
-  std::size_t count = 0;
-  for (const Finding& finding : report.findings) {
-    if (finding.severity != Severity::error || ++count > kFindingsShown) continue;
-    if (!lines.empty()) lines += '\n';
-    lines += validate::finding_text(finding);
-  }
-  const std::uint64_t omitted =
-      report.findings_omitted + (count > kFindingsShown ? count - kFindingsShown : 0);
-  if (omitted > 0) lines += "\nand " + std::to_string(omitted) + " more";
-  return lines;
-}
-
-void fail_invalid(const Report& report, wt_reply* reply) {
-  fail(reply, "22023", "the solid is invalid", errors_of(report));
-  reply->failure.is_invalid = true;
-}
 
 void validate_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
@@ -193,97 +111,12 @@ void solid_of_read(const wt_job& job, const CallLimits& call, Result<SubmittedSo
   value_into(call, solid.solid(), encode(solid), reply);
 }
 
-/// Whether this program can judge by the rules that a blob states.
-Status check_acceptance(const Acceptance& acceptance) {
-  const Tolerances& tolerances = acceptance.tolerances;
-  const auto is_within = [](double value, double least, double most) {
-    return value >= least && value <= most;
-  };
-  if (acceptance.rule_set != geometry::kRuleSet) {
-    return Error{ErrorCode::unsupported,
-                 "the blob states rule set " + std::to_string(acceptance.rule_set)};
-  }
-  if (!is_within(tolerances.planarity_metres, WATERTIGHT_LEAST_PLANARITY,
-                 WATERTIGHT_MOST_PLANARITY) ||
-      !is_within(tolerances.planarity_degrees, WATERTIGHT_LEAST_ANGLE, WATERTIGHT_MOST_ANGLE) ||
-      tolerances.snap_metres != 0) {
-    return Error{ErrorCode::invalid_argument, "the blob states tolerances outside their ranges"};
-  }
-  return Done{};
-}
-
-/// The solid of a blob, judged again: the exact tests run with the tolerances that the blob states;
-/// its proof by tetrahedralization is believed. Nothing, and a failure of the reply, if it does not
-/// pass.
-std::optional<ValidSolid> judged(const wt_job& job, const CallLimits& call, const Decoded& decoded,
-                                 wt_reply* reply) {
-  const auto refused = [&](const Error& error) {
-    fail(reply, error);
-    return std::nullopt;
-  };
-  const Acceptance& acceptance = decoded.info.acceptance;
-  if (const Status checked = check_acceptance(acceptance); !checked) {
-    return refused(checked.error());
-  }
-  CertifyOptions options = options_of(job, call);
-  options.tolerances = acceptance.tolerances;
-  options.proof = Proof::boundary;
-  options.ladder.strict = false;
-  const Inspection inspection = certify(decoded.solid, nullptr, options);
-  if (const Status in_time = call.check(); !in_time) return refused(in_time.error());
-  if (!inspection.certified) {
-    fail_invalid(inspection.report, reply);
-    return std::nullopt;
-  }
-  const ValidSolid& solid = inspection.certified->solid;
-  const auto order = compare(solid.solid(), decoded.solid);
-  if (!order) return refused(order.error());
-  if (*order == 0) return solid;
-  return refused(
-      {ErrorCode::not_encodable, "the blob has another solid than a valid one: it is inside out"});
-}
-
 /// Answers a blob with its value.
 void solid_of_blob(const wt_job& job, const CallLimits& call, wt_reply* reply) {
   const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
   if (!decoded) return fail(reply, call.of_reading(decoded.error()));
   if (!judged(job, call, *decoded, reply)) return;
   value_into(call, decoded->solid, Bytes(job.bytes, job.bytes + job.size), reply);
-}
-
-/// How the solids of two blobs meet; "apart" after a failure of the reply.
-wt_relation relation_of(const wt_job& job, ByteView other, wt_reply* reply) {
-  const CallLimits call(job);
-  std::vector<ValidSolid> solids;
-  for (const ByteView blob : {bytes_of(job), other}) {
-    const Result<Decoded> decoded = decode(blob, call.of_input());
-    if (!decoded) return fail(reply, call.of_reading(decoded.error())), WT_APART;
-    auto solid = judged(job, call, *decoded, reply);
-    if (!solid) return WT_APART;
-    solids.push_back(*std::move(solid));
-  }
-  const std::array<validate::GroupMember, 2> members{{{&solids[0]}, {&solids[1]}}};
-  const std::array<Index, 2> cells{0, 1};
-  std::array<validate::CellPair, 1> pair{{{0, 1}}};
-  validate::GroupOptions options;
-  options.do_steps_warn = false;
-  options.limits = call.of_input();
-  options.cancel = call.poll();
-  const validate::GroupReport report = validate::check_cells(members, cells, pair, options);
-  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error()), WT_APART;
-  if (!report.findings.empty()) return WT_OVERLAPPING;
-  switch (pair[0].contact) {
-    case validate::CellContact::area:
-      return WT_TOUCHING_BY_AREA;
-    case validate::CellContact::at_points:
-      return WT_TOUCHING_AT_POINTS;
-    case validate::CellContact::apart:
-      return WT_APART;
-    default:
-      break;
-  }
-  fail(reply, "0A000", "the solids have no common grid on which they can be compared");
-  return WT_APART;
 }
 
 void solid_into(const wt_job& job, wt_reply* reply) {
@@ -293,36 +126,9 @@ void solid_into(const wt_job& job, wt_reply* reply) {
   solid_of_read(job, call, formats::read_ewkb(bytes_of(job), call.of_input()), reply);
 }
 
-void translate_into(const wt_job& job, const double* way, wt_reply* reply) {
-  const CallLimits call(job);
-  Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
-  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
-  const Solid& solid = decoded->solid;
-  const auto lattice = geometry::moved_lattice(solid.lattice(), {way[0], way[1], way[2]});
-  if (!lattice) return fail(reply, lattice.error());
-  auto moved = Solid::make(solid.arrays(), *lattice, solid.srid());
-  if (!moved) return fail(reply, moved.error());
-  decoded->solid = *std::move(moved);
-  const Result<Bytes> blob = codec::blob_of(*decoded);
-  if (!blob) return fail(reply, blob.error());
-  wt_job again = job;
-  again.bytes = blob->data();
-  again.size = blob->size();
-  solid_of_blob(again, call, reply);
-}
-
 void solid_of_wkt_into(const wt_job& job, wt_reply* reply) {
   const CallLimits call(job);
   solid_of_read(job, call, formats::read_wkt(as_text(bytes_of(job)), call.of_input()), reply);
-}
-
-void wkt_into(const wt_job& job, wt_reply* reply) {
-  const CallLimits call(job);
-  const Result<Decoded> decoded = decode(bytes_of(job), call.of_input());
-  if (!decoded) return fail(reply, call.of_reading(decoded.error()));
-  const std::string text = formats::write_wkt(decoded->solid);
-  if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
-  answer(reply, as_bytes(text));
 }
 
 }  // namespace
@@ -390,23 +196,6 @@ void wt_bridge_solid(const wt_job* job, wt_reply* reply) noexcept {
 
 void wt_bridge_solid_of_wkt(const wt_job* job, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::solid_of_wkt_into(*job, reply); });
-}
-
-void wt_bridge_translate(const wt_job* job, const double way[3], wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::sql::translate_into(*job, way, reply); });
-}
-
-wt_relation wt_bridge_relation(const wt_job* job, const uint8_t* other, size_t other_size,
-                               wt_reply* reply) noexcept {
-  wt_relation relation = WT_APART;
-  guarded(reply, [&] {
-    relation = watertight::sql::relation_of(*job, {other, other_size}, reply);
-  });
-  return relation;
-}
-
-void wt_bridge_wkt(const wt_job* job, wt_reply* reply) noexcept {
-  guarded(reply, [=] { watertight::sql::wkt_into(*job, reply); });
 }
 
 wt_rule_choice wt_default_rules() noexcept {

@@ -39,7 +39,7 @@ typedef struct wt_failure {
 typedef struct wt_reply {
   uint8_t* bytes; /* the value: a blob, EWKB, or JSON text */
   size_t size;
-  bool truth; /* the value of wt_bridge_is_valid and wt_bridge_contains */
+  bool truth; /* the value of wt_bridge_is_valid, wt_bridge_contains, wt_bridge_meets_segment */
   wt_failure failure;
 } wt_reply;
 
@@ -120,8 +120,52 @@ void wt_bridge_solid_of_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXC
  *  without rounding; it is judged again as one that comes in. */
 void wt_bridge_translate(const wt_job* job, const double way[3],
                          wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a blob with the value of its solid in EPSG system `srid`: x and y by PROJ, longitude
+ *  first, rounded to 0.0001 units or 1e-9 degrees; z as it is. It is judged as a new solid, by the
+ *  rules that the blob states. Fails with 0A000 where PROJ has no way from one to the other. */
+void wt_bridge_transform(const wt_job* job, uint32_t srid, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with WKT, UTF-8. */
 void wt_bridge_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a blob with an OBJ document; facets with holes are triangles there. Fails with 0A000 for
+ *  a solid with cavities. */
+void wt_bridge_obj(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a blob with a binary glTF, whose origin is the low corner of the box. */
+void wt_bridge_glb(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a blob with the facets of all shells as EWKB of a MULTIPOLYGON Z. */
+void wt_bridge_boundary(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
+/** The bytes of a blob. */
+typedef struct wt_blob_view {
+  const uint8_t* bytes;
+  size_t size;
+} wt_blob_view;
+/** Blobs and the names of their solids, UTF-8. */
+typedef struct wt_named_blobs {
+  const wt_blob_view* blobs;
+  const char* const* names;
+  size_t count;
+} wt_named_blobs;
+/** Answers blobs with one CityJSON document, UTF-8, in which each solid is a city object. Fails
+ *  with 0A000 for several reference systems, and for coordinates on no decimal grid. The job has
+ *  the limits alone, here and below. */
+void wt_bridge_city_json(const wt_job* job, const wt_named_blobs* solids,
+                         wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers blobs with one page (codec/page.h), without bytes where there is none. */
+void wt_bridge_page(const wt_job* job, const wt_blob_view* blobs, size_t count,
+                    wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers the blobs of the parts of a building with an array of findings as JSON: solids that
+ *  share interior (601), whose places name them by their numbers, from 0. */
+void wt_bridge_parts(const wt_job* job, const wt_blob_view* blobs, size_t count,
+                     wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
+/** A tetrahedron, in units of the reference system. */
+typedef struct wt_tetrahedron {
+  double corners[4][3];
+} wt_tetrahedron;
+/** Answers a blob with an array of wt_tetrahedron: the interior of the certified constrained
+ *  Delaunay tetrahedralization, Steiner vertices included. Fails with WATERTIGHT_UNDECIDED if the
+ *  helpers do not find it. */
+void wt_bridge_tetrahedra(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 
 /** How two solids meet. */
 typedef enum wt_relation {
@@ -134,6 +178,23 @@ typedef enum wt_relation {
  *  system, which is not checked. */
 wt_relation wt_bridge_relation(const wt_job* job, const uint8_t* other, size_t other_size,
                                wt_reply* reply) WATERTIGHT_NOEXCEPT;
+
+/** Gives the area in which the boundaries of the solids of two blobs face each other at most
+ *  `tolerance` apart, in square units; 0: in exactly one plane. They are in one reference system,
+ *  which is not checked. */
+void wt_bridge_shared_area(const wt_job* job, const uint8_t* other, size_t other_size,
+                           double tolerance, double* area, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Gives the distance of the solids of two blobs in the same way; 0 if they have a point in common.
+ */
+void wt_bridge_distance(const wt_job* job, const uint8_t* other, size_t other_size,
+                        double* distance, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Gives the distance of the solid of a blob from a place with finite coordinates. */
+void wt_bridge_distance_of_place(const wt_job* job, const double place[3], double* distance,
+                                 wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Whether the solid of a blob has a point in common with a segment, whose ends are finite; `truth`
+ *  has it. */
+void wt_bridge_meets_segment(const wt_job* job, const double from[3], const double to[3],
+                             wt_reply* reply) WATERTIGHT_NOEXCEPT;
 
 /** The measures of a solid that take its coordinates. */
 typedef struct wt_measures {

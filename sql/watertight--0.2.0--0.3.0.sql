@@ -73,10 +73,54 @@ COMMENT ON FUNCTION wt_as_ewkb(solid) IS
 CREATE FUNCTION wt_as_text(solid solid) RETURNS text
   AS 'MODULE_PATHNAME', 'wt_solid_wkt' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 50;
 COMMENT ON FUNCTION wt_as_text(solid) IS 'WKT of a solid: POLYHEDRALSURFACE Z, or SOLID Z when it has cavities';
+CREATE FUNCTION wt_as_obj(solid solid) RETURNS text
+  AS 'MODULE_PATHNAME', 'wt_solid_obj' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
+COMMENT ON FUNCTION wt_as_obj(solid) IS 'OBJ document of a solid; facets with holes are triangles, cavities are an error';
+CREATE FUNCTION wt_as_cityjson(solid solid, id text DEFAULT 'solid') RETURNS text
+  AS 'MODULE_PATHNAME', 'wt_solid_city_json' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 300;
+COMMENT ON FUNCTION wt_as_cityjson(solid, text) IS 'CityJSON document of a solid, as a city object of this id';
+CREATE FUNCTION wt_cityjson_of(solids solid[], ids text[]) RETURNS text
+  AS 'MODULE_PATHNAME', 'wt_solid_city_json_of_array' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_cityjson_of(solid[], text[]) IS
+  'CityJSON document of many solids, each a city object with the id of the same number: wt_cityjson_of(array_agg(solid), array_agg(id))';
+CREATE FUNCTION wt_as_glb(solid solid) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_solid_glb' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 300;
+COMMENT ON FUNCTION wt_as_glb(solid) IS
+  'binary glTF of a solid, in metres from the low corner of its box; facets look like roofs, walls or grounds by their tilt';
+CREATE FUNCTION wt_boundary(solid solid) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_solid_boundary' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 50;
+COMMENT ON FUNCTION wt_boundary(solid) IS
+  'EWKB of the facets of a solid, cavities included, as a MULTIPOLYGON Z, for programs that know no solids';
+CREATE FUNCTION wt_tetrahedra(solid solid, OUT tetrahedron integer, OUT a float8[], OUT b float8[], OUT c float8[],
+    OUT d float8[]) RETURNS SETOF record
+  AS 'MODULE_PATHNAME', 'wt_solid_tetrahedra' LANGUAGE C STABLE STRICT PARALLEL SAFE COST 10000 ROWS 100;
+COMMENT ON FUNCTION wt_tetrahedra(solid) IS
+  'the tetrahedra that fill a solid, from its constrained Delaunay tetrahedralization, made and certified again';
+-- The aggregates below gather solids in an array, without NULL.
+CREATE FUNCTION wt_append(solids solid[], solid solid) RETURNS solid[]
+  AS 'array_append' LANGUAGE internal IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_append(solid[], solid) IS 'the array with a solid more, for aggregates';
+CREATE FUNCTION wt_page_of(solids solid[]) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_solid_page' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_page_of(solid[]) IS
+  'page of the blobs of up to 256 solids on one grid, from which wt_blob gives them back; NULL where a page is not smaller than the blobs';
+CREATE AGGREGATE wt_page_agg(solid) (SFUNC = wt_append, STYPE = solid[], INITCOND = '{}', FINALFUNC = wt_page_of);
+COMMENT ON AGGREGATE wt_page_agg(solid) IS 'page of the blobs of solids, in their order; NULL where there is none (wt_page_of)';
+CREATE FUNCTION wt_check_parts_of(solids solid[]) RETURNS jsonb
+  AS 'MODULE_PATHNAME', 'wt_solid_parts' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_check_parts_of(solid[]) IS
+  'findings about solids as the parts of one building: those that share interior (601), named by their numbers, from 0';
+CREATE AGGREGATE wt_check_parts(solid) (SFUNC = wt_append, STYPE = solid[], INITCOND = '{}', FINALFUNC = wt_check_parts_of);
+COMMENT ON AGGREGATE wt_check_parts(solid) IS
+  'findings about the parts of a building: those that share interior (601), named by their numbers, from 0';
 CREATE FUNCTION wt_translate(solid solid, x float8, y float8, z float8) RETURNS solid
   AS 'MODULE_PATHNAME', 'wt_solid_translate' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
 COMMENT ON FUNCTION wt_translate(solid, float8, float8, float8) IS
   'the solid moved, without rounding; an error where its coordinates would have to be rounded';
+CREATE FUNCTION wt_transform(solid solid, srid integer) RETURNS solid
+  AS 'MODULE_PATHNAME', 'wt_solid_transform' LANGUAGE C STABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_transform(solid, integer) IS
+  'the solid in another EPSG system: x and y by PROJ, rounded to 0.0001 units or 1e-9 degrees, z as it is; judged anew';
 CREATE FUNCTION wt_solid_info(solid solid) RETURNS jsonb
   AS 'MODULE_PATHNAME', 'wt_solid_info' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 100;
 COMMENT ON FUNCTION wt_solid_info(solid) IS 'header, counts and sizes of the parts of the blob of a solid';
@@ -140,6 +184,23 @@ CREATE FUNCTION wt_shares_area(solid, solid) RETURNS boolean
   AS 'MODULE_PATHNAME', 'wt_solid_shares_area' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
 COMMENT ON FUNCTION wt_shares_area(solid, solid) IS
   'whether the boundaries of two solids have an area in common, and no point is inside both (a party wall), decided exactly';
+CREATE FUNCTION wt_shared_area(solid, solid, tolerance float8 DEFAULT 0) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_solid_shared_area' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
+COMMENT ON FUNCTION wt_shared_area(solid, solid, float8) IS
+  'area in which two solids stand wall to wall (party walls): in exactly the same plane, or at most the tolerance apart';
+CREATE FUNCTION wt_distance(solid, solid) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_solid_distance' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
+COMMENT ON FUNCTION wt_distance(solid, solid) IS
+  'least distance of two solids; 0 exactly if they have a point in common';
+CREATE FUNCTION wt_distance(solid solid, x float8, y float8, z float8) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_solid_distance_of_place' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 300;
+COMMENT ON FUNCTION wt_distance(solid, float8, float8, float8) IS
+  'least distance of a solid from a place; 0 exactly if the place is inside or on the boundary';
+CREATE FUNCTION wt_intersects_segment(solid solid, x1 float8, y1 float8, z1 float8, x2 float8, y2 float8, z2 float8)
+  RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_meets_segment' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 300;
+COMMENT ON FUNCTION wt_intersects_segment(solid, float8, float8, float8, float8, float8, float8) IS
+  'whether the segment between two places has a point in common with a solid, decided exactly (a line of sight)';
 CREATE FUNCTION wt_faces(solid solid, OUT shell integer, OUT facet integer, OUT area float8, OUT normal float8[],
     OUT tilt float8, OUT azimuth float8, OUT centroid float8[], OUT planarity float8, OUT rings integer)
   RETURNS SETOF record
@@ -289,7 +350,7 @@ COMMENT ON FUNCTION wt_gist_penalty(internal, internal, internal) IS 'for the in
 COMMENT ON FUNCTION wt_gist_picksplit(internal, internal) IS 'for the index on boxes';
 COMMENT ON FUNCTION wt_gist_same(wt_box, wt_box, internal) IS 'for the index on boxes';
 COMMENT ON FUNCTION wt_gist_distance(internal, solid, smallint, oid, internal) IS 'for the index on boxes';
--- A number of an operator with a box on its right is 20 more than that with a solid (sql/box_index.c).
+-- A number of an operator with a box on its right is 20 more than that with a solid (sql/module/box_index.c).
 CREATE OPERATOR CLASS solid_box_ops DEFAULT FOR TYPE solid USING gist AS
   OPERATOR 3 && (solid, solid), OPERATOR 23 && (solid, wt_box),
   OPERATOR 7 @> (solid, solid), OPERATOR 27 @> (solid, wt_box),

@@ -11,7 +11,7 @@
 #include "access/stratnum.h"
 #include "fmgr.h"
 
-#include "sql/boxes.h"
+#include "sql/module/boxes.h"
 
 /* The numbers of the operators in the class; with a box on the right they are BOX_STRATEGIES more. */
 #define OVERLAPS 3

@@ -11,7 +11,7 @@
 #include "utils/builtins.h"
 #include "utils/float.h"
 
-#include "sql/boxes.h"
+#include "sql/module/boxes.h"
 
 SolidBox
 box_of_solid(Datum solid)

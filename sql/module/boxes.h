@@ -5,7 +5,7 @@
 #ifndef WATERTIGHT_SQL_BOXES_H
 #define WATERTIGHT_SQL_BOXES_H
 
-#include "sql/solid_facts.h"
+#include "sql/module/solid_facts.h"
 
 /** The box in the value of a solid. */
 SolidBox box_of_solid(Datum solid);

@@ -17,7 +17,7 @@
 #include "utils/memutils.h"
 #include "utils/numeric.h"
 
-#include "sql/backend.h"
+#include "sql/module/backend.h"
 
 PG_MODULE_MAGIC;
 

@@ -15,8 +15,8 @@
 #include "utils/array.h"
 #include "utils/builtins.h"
 
-#include "sql/backend.h"
-#include "sql/solid_facts.h"
+#include "sql/module/backend.h"
+#include "sql/module/solid_facts.h"
 
 /* The fewest bytes of a value: facts, and a blob that is not empty. */
 #define LEAST_SIZE (WATERTIGHT_SOLID_BLOB + 1)
@@ -50,9 +50,8 @@ read_solid_facts(Datum solid, SolidFacts *facts)
 		pfree(head);
 }
 
-/* The blob of a value, as a job of the bridge. */
-static wt_job
-job_on(Datum solid)
+wt_job
+job_on_solid(Datum solid)
 {
 	struct varlena *value = PG_DETOAST_DATUM_PACKED(solid);
 
@@ -62,11 +61,11 @@ job_on(Datum solid)
 				   VARSIZE_ANY_EXHDR(value) - WATERTIGHT_SOLID_BLOB, NULL, false);
 }
 
-static wt_reply *
+wt_reply *
 run_on_solid(bridge_function function, Datum solid)
 {
 	wt_reply   *reply = new_reply();
-	wt_job		job = job_on(solid);
+	wt_job		job = job_on_solid(solid);
 
 	function(&job, reply);
 	check_reply(reply);
@@ -119,7 +118,7 @@ PG_FUNCTION_INFO_V1(wt_solid_out);
 Datum
 wt_solid_out(PG_FUNCTION_ARGS)
 {
-	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	wt_job		job = job_on_solid(PG_GETARG_DATUM(0));
 	char	   *text = palloc(2 * job.size + 1);
 
 	text[hex_encode((const char *) job.bytes, job.size, text)] = '\0';
@@ -140,7 +139,7 @@ PG_FUNCTION_INFO_V1(wt_solid_blob);
 Datum
 wt_solid_blob(PG_FUNCTION_ARGS)
 {
-	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	wt_job		job = job_on_solid(PG_GETARG_DATUM(0));
 	bytea	   *blob = palloc(VARHDRSZ + job.size);
 
 	SET_VARSIZE(blob, VARHDRSZ + job.size);
@@ -185,24 +184,6 @@ wt_try_solid(PG_FUNCTION_ARGS)
 	PG_RETURN_DATUM(bytea_of(reply));
 }
 
-PG_FUNCTION_INFO_V1(wt_solid_ewkb);
-Datum
-wt_solid_ewkb(PG_FUNCTION_ARGS)
-{
-	PG_RETURN_DATUM(bytea_of(run_on_solid(wt_bridge_decode, PG_GETARG_DATUM(0))));
-}
-
-PG_FUNCTION_INFO_V1(wt_solid_wkt);
-Datum
-wt_solid_wkt(PG_FUNCTION_ARGS)
-{
-	wt_reply   *reply = run_on_solid(wt_bridge_wkt, PG_GETARG_DATUM(0));
-	text	   *wkt = cstring_to_text(from_utf8((const char *) reply->bytes));
-
-	wt_reply_clear(reply);
-	PG_RETURN_TEXT_P(wkt);
-}
-
 PG_FUNCTION_INFO_V1(wt_solid_info);
 Datum
 wt_solid_info(PG_FUNCTION_ARGS)
@@ -215,21 +196,6 @@ Datum
 wt_solid_rules(PG_FUNCTION_ARGS)
 {
 	PG_RETURN_DATUM(jsonb_of(run_on_solid(wt_bridge_rules_of, PG_GETARG_DATUM(0))));
-}
-
-PG_FUNCTION_INFO_V1(wt_solid_translate);
-Datum
-wt_solid_translate(PG_FUNCTION_ARGS)
-{
-	wt_reply   *reply = new_reply();
-	wt_job		job = job_on(PG_GETARG_DATUM(0));
-	double		way[3];
-
-	for (int axis = 0; axis < 3; ++axis)
-		way[axis] = PG_GETARG_FLOAT8(axis + 1);
-	wt_bridge_translate(&job, way, reply);
-	check_reply(reply);
-	PG_RETURN_DATUM(bytea_of(reply));
 }
 
 /* Measures that stand in the value. */
@@ -270,7 +236,7 @@ static wt_measures
 measures_of_argument(FunctionCallInfo fcinfo)
 {
 	wt_reply   *reply = new_reply();
-	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	wt_job		job = job_on_solid(PG_GETARG_DATUM(0));
 	wt_measures measures;
 
 	wt_bridge_measures(&job, &measures, reply);
@@ -316,7 +282,7 @@ Datum
 wt_solid_genus(PG_FUNCTION_ARGS)
 {
 	wt_reply   *reply = new_reply();
-	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	wt_job		job = job_on_solid(PG_GETARG_DATUM(0));
 	int64_t		genus;
 
 	wt_bridge_genus(&job, &genus, reply);
@@ -324,7 +290,7 @@ wt_solid_genus(PG_FUNCTION_ARGS)
 	PG_RETURN_INT64(genus);
 }
 
-static Datum
+Datum
 array_of(const double numbers[3])
 {
 	Datum		elements[3];
@@ -340,7 +306,7 @@ Datum
 wt_solid_centroid(PG_FUNCTION_ARGS)
 {
 	wt_reply   *reply = new_reply();
-	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	wt_job		job = job_on_solid(PG_GETARG_DATUM(0));
 	double		centroid[3];
 
 	wt_bridge_centroid(&job, centroid, reply);
@@ -353,7 +319,7 @@ Datum
 wt_solid_volume_below(PG_FUNCTION_ARGS)
 {
 	wt_reply   *reply = new_reply();
-	wt_job		job = job_on(PG_GETARG_DATUM(0));
+	wt_job		job = job_on_solid(PG_GETARG_DATUM(0));
 	double		height = PG_GETARG_FLOAT8(1);
 	double		volume;
 
@@ -363,83 +329,6 @@ wt_solid_volume_below(PG_FUNCTION_ARGS)
 	wt_bridge_volume_below(&job, height, &volume, reply);
 	check_reply(reply);
 	PG_RETURN_FLOAT8(volume);
-}
-
-PG_FUNCTION_INFO_V1(wt_solid_contains_place);
-Datum
-wt_solid_contains_place(PG_FUNCTION_ARGS)
-{
-	wt_reply   *reply = new_reply();
-	SolidFacts	facts;
-	double		place[3];
-	bool		is_in_box = true;
-	wt_job		job;
-
-	read_solid_facts(PG_GETARG_DATUM(0), &facts);
-	for (int axis = 0; axis < 3; ++axis)
-	{
-		place[axis] = PG_GETARG_FLOAT8(axis + 1);
-		if (!isfinite(place[axis]))
-			ereport(ERROR,
-					(errcode(ERRCODE_INVALID_PARAMETER_VALUE), errmsg("a coordinate is not a finite number")));
-		is_in_box &= place[axis] >= facts.box[axis] && place[axis] <= facts.box[3 + axis];
-	}
-	if (!is_in_box)
-		PG_RETURN_BOOL(false);
-	job = job_on(PG_GETARG_DATUM(0));
-	wt_bridge_contains(&job, place, reply);
-	check_reply(reply);
-	PG_RETURN_BOOL(reply->truth);
-}
-
-/* How two solids meet. Those whose boxes are apart are not looked at. */
-static wt_relation
-relation_of_arguments(FunctionCallInfo fcinfo)
-{
-	SolidFacts	facts[2];
-	wt_reply   *reply;
-	wt_job		job;
-	wt_job		other;
-	wt_relation relation;
-
-	for (int i = 0; i < 2; ++i)
-		read_solid_facts(PG_GETARG_DATUM(i), &facts[i]);
-	if (facts[0].srid != facts[1].srid)
-		ereport(ERROR,
-				(errcode(ERRCODE_INVALID_PARAMETER_VALUE),
-				 errmsg("the solids are in different reference systems"),
-				 errdetail("They are in %u and %u.", facts[0].srid, facts[1].srid)));
-	for (int axis = 0; axis < 3; ++axis)
-		for (int i = 0; i < 2; ++i)
-			if (facts[i].box[axis] > facts[1 - i].box[3 + axis])
-				return WT_APART;
-	reply = new_reply();
-	job = job_on(PG_GETARG_DATUM(0));
-	other = job_on(PG_GETARG_DATUM(1));
-	relation = wt_bridge_relation(&job, other.bytes, other.size, reply);
-	check_reply(reply);
-	return relation;
-}
-
-PG_FUNCTION_INFO_V1(wt_solid_overlaps);
-Datum
-wt_solid_overlaps(PG_FUNCTION_ARGS)
-{
-	PG_RETURN_BOOL(relation_of_arguments(fcinfo) == WT_OVERLAPPING);
-}
-
-PG_FUNCTION_INFO_V1(wt_solid_intersects);
-Datum
-wt_solid_intersects(PG_FUNCTION_ARGS)
-{
-	PG_RETURN_BOOL(relation_of_arguments(fcinfo) != WT_APART);
-}
-
-PG_FUNCTION_INFO_V1(wt_solid_shares_area);
-Datum
-wt_solid_shares_area(PG_FUNCTION_ARGS)
-{
-	PG_RETURN_BOOL(relation_of_arguments(fcinfo) == WT_TOUCHING_BY_AREA);
 }
 
 /* The facets of a solid, as rows. */
@@ -492,8 +381,8 @@ compare(Datum left, Datum right)
 	read_solid_facts(right, &other);
 	if (one.hash != other.hash)
 		return one.hash < other.hash ? -1 : 1;
-	job = job_on(left);
-	other_job = job_on(right);
+	job = job_on_solid(left);
+	other_job = job_on_solid(right);
 	if (job.size == other_job.size && memcmp(job.bytes, other_job.bytes, job.size) == 0)
 		return 0;
 	reply = new_reply();

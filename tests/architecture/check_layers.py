@@ -67,7 +67,7 @@ HOMES = [
     (r"meshoptimizer\.h", "meshoptimizer", [r"tiles/", r"tests/unit/tiles/", r"bench/"]),
     (r"draco/", "Draco", [r"bench/"]),
     (r"(postgres|fmgr|funcapi|miscadmin|varatt)\.h|(utils|catalog|executor|access|lib|mb|port|storage|parser|"
-     r"nodes|commands|common|tcop|libpq)/[a-z_]+\.h", "the PostgreSQL server", [r"sql/[^/]+\.c$", r"sql/(backend|solid_facts)\.h$"]),
+     r"nodes|commands|common|tcop|libpq)/[a-z_]+\.h", "the PostgreSQL server", [r"sql/module/"]),
 ]
 
 SOURCE = re.compile(r"\.(h|cpp|c)$")
@@ -182,7 +182,7 @@ def check_existence(tree):
         for quote, path in includes:
             if quote != '"' or path in tree.text or path.endswith((".inc", ".ipp")):
                 continue
-            if re.match(r"sql/([^/]+\.c|backend\.h|solid_facts\.h)$", name) and is_home_header(path):
+            if name.startswith("sql/module/") and is_home_header(path):
                 continue
             yield f"{name}: existence: \"{path}\" is not a file of the repository (paths start at its root)"
 

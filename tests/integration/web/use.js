@@ -209,8 +209,7 @@ async function city() {
   await page.getByLabel('From above').uncheck();
   await page.getByRole('button', {name: 'Next finding'}).click();
   await page.getByText('1 of 7 that are not proven').waitFor();
-  await eventually(
-      () => isInMiddle(kChosen, 0.01), 'the next feature with findings is flown to');
+  await eventually(() => isInMiddle(kChosen, 0.01), 'the next feature with findings is flown to');
   await quiet();
   const chosen = await pixels(kChosen);
   await shot('city-finding');
@@ -230,8 +229,7 @@ async function city() {
   const box = await page.locator('.stage canvas').boundingBox();
   await page.mouse.click(box.x + box.width * chosen.x, box.y + box.height * chosen.y);
   await quiet();
-  check(
-      await page.locator('.side h2').textContent() === id, 'a click finds what is seen there');
+  check(await page.locator('.side h2').textContent() === id, 'a click finds what is seen there');
   const before = await picture();
   await page.locator('.stage canvas').focus();
   await page.keyboard.press('ArrowLeft');

@@ -432,7 +432,7 @@ GOOD_TREE = {
     "formats/CMakeLists.txt": "# SPDX-License-Identifier: X\nwatertight_folder(formats DEPENDS base)\n",
     "formats/texts.cpp": SPDX + "#include <zstd.h>\n",
     "sql/CMakeLists.txt": "# SPDX-License-Identifier: X\nwatertight_folder(sql DEPENDS base)\n",
-    "sql/bridge.c": SPDX + '#include "postgres.h"\n#include "utils/builtins.h"\n',
+    "sql/module/bridge.c": SPDX + '#include "postgres.h"\n#include "utils/builtins.h"\n',
     "docs/architecture.md": "The vocabulary: `Solid`.\n",
     "geometry/named.h": SPDX + "namespace watertight::geometry {\nclass Solid {\n};\n"
         "constexpr int kSides = 3;\ninline double unit(const Solid& a) {\n}\n"

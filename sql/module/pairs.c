@@ -31,17 +31,20 @@ read_place(FunctionCallInfo fcinfo, int first, double place[3])
 	}
 }
 
-/* The largest distance of two boxes along an axis; 0 or less if they have a point in common. */
+/* The largest distance of the boxes of the first two arguments along an axis; 0 or less if they
+ * have a point in common. The solids must be in one reference system. */
 static double
-gap_of_boxes(const SolidFacts *left, const SolidFacts *right)
+gap_of_arguments(FunctionCallInfo fcinfo)
 {
+	SolidFacts	facts[2];
 	double		gap = -INFINITY;
 
+	for (int i = 0; i < 2; ++i)
+		read_solid_facts(PG_GETARG_DATUM(i), &facts[i]);
+	check_one_system(&facts[0], &facts[1]);
 	for (int axis = 0; axis < 3; ++axis)
-	{
-		gap = Max(gap, (double) left->box[axis] - right->box[3 + axis]);
-		gap = Max(gap, (double) right->box[axis] - left->box[3 + axis]);
-	}
+		for (int i = 0; i < 2; ++i)
+			gap = Max(gap, (double) facts[i].box[axis] - facts[1 - i].box[3 + axis]);
 	return gap;
 }
 
@@ -71,16 +74,12 @@ wt_solid_contains_place(PG_FUNCTION_ARGS)
 static wt_relation
 relation_of_arguments(FunctionCallInfo fcinfo)
 {
-	SolidFacts	facts[2];
 	wt_reply   *reply;
 	wt_job		job;
 	wt_job		other;
 	wt_relation relation;
 
-	for (int i = 0; i < 2; ++i)
-		read_solid_facts(PG_GETARG_DATUM(i), &facts[i]);
-	check_one_system(&facts[0], &facts[1]);
-	if (gap_of_boxes(&facts[0], &facts[1]) > 0)
+	if (gap_of_arguments(fcinfo) > 0)
 		return WT_APART;
 	reply = new_reply();
 	job = job_on_solid(PG_GETARG_DATUM(0));
@@ -118,20 +117,16 @@ Datum
 wt_solid_shared_area(PG_FUNCTION_ARGS)
 {
 	double		tolerance = PG_GETARG_FLOAT8(2);
-	SolidFacts	facts[2];
 	wt_reply   *reply;
 	wt_job		job;
 	wt_job		other;
 	double		area = 0;
 
-	for (int i = 0; i < 2; ++i)
-		read_solid_facts(PG_GETARG_DATUM(i), &facts[i]);
-	check_one_system(&facts[0], &facts[1]);
 	if (!isfinite(tolerance) || tolerance < 0)
 		ereport(ERROR,
 				(errcode(ERRCODE_INVALID_PARAMETER_VALUE),
 				 errmsg("the tolerance is not a finite number of 0 or more")));
-	if (gap_of_boxes(&facts[0], &facts[1]) > tolerance)
+	if (gap_of_arguments(fcinfo) > tolerance)
 		PG_RETURN_FLOAT8(0);
 	reply = new_reply();
 	job = job_on_solid(PG_GETARG_DATUM(0));
@@ -145,15 +140,12 @@ PG_FUNCTION_INFO_V1(wt_solid_distance);
 Datum
 wt_solid_distance(PG_FUNCTION_ARGS)
 {
-	SolidFacts	facts[2];
 	wt_reply   *reply = new_reply();
 	wt_job		job;
 	wt_job		other;
 	double		distance = 0;
 
-	for (int i = 0; i < 2; ++i)
-		read_solid_facts(PG_GETARG_DATUM(i), &facts[i]);
-	check_one_system(&facts[0], &facts[1]);
+	(void) gap_of_arguments(fcinfo); /* raises an error for two systems */
 	job = job_on_solid(PG_GETARG_DATUM(0));
 	other = job_on_solid(PG_GETARG_DATUM(1));
 	wt_bridge_distance(&job, other.bytes, other.size, &distance, reply);

@@ -229,6 +229,12 @@ Exit run(const CollectionsCommand& command);
 /// "watertight: <file>: <what> (at <place>)" on standard error.
 void complain(const std::string& file, const Error& error);
 
+/// Complains; the exit status of a command that could not do its work.
+Exit fail(const std::string& file, const Error& error);
+
+/// The same for a file that could not be written, which may be standard output ("-").
+Exit fail_to_write(const std::string& file, const Error& error);
+
 /// The findings of a feature's solids and groups, as lines.
 void print_findings(const std::string& file, const pipeline::FeatureOutcome& feature,
                     std::FILE* out = stdout);

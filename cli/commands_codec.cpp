@@ -30,15 +30,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Exit fail(const std::string& file, const Error& error) {
-  complain(file, error);
-  return Exit::error;
-}
-
-Exit fail_to_write(const std::string& file, const Error& error) {
-  return fail(file == "-" ? "standard output" : file, error);
-}
-
 bool replaces(const std::string& output, const std::string& input) {
   return output != "-" && files::is_same_file(output, input);
 }

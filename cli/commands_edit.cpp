@@ -17,11 +17,6 @@
 namespace watertight::cli {
 namespace {
 
-Exit fail(const std::string& file, const Error& error) {
-  complain(file, error);
-  return Exit::error;
-}
-
 /// A Watertight file that is being added to.
 class EditedFile {
  public:

@@ -12,11 +12,6 @@
 namespace watertight::cli {
 namespace {
 
-Exit fail(const std::string& file, const Error& error) {
-  complain(file, error);
-  return Exit::error;
-}
-
 /// The box of 4 or 6 numbers. Errors: invalid_argument.
 Result<store::StoredBox> box_of_numbers(const std::vector<double>& numbers) {
   constexpr double kEndless = std::numeric_limits<double>::infinity();

@@ -68,11 +68,6 @@ class ExportRun {
   static std::string name_of(const std::string& output) {
     return output == "-" ? "standard output" : output;
   }
-  static Exit fail(const std::string& what, const Error& error) {
-    complain(what, error);
-    return Exit::error;
-  }
-
   Status read_conditions() {
     if (command_.where.empty()) return Done{};
     std::vector<store::AttributeCondition> conditions;

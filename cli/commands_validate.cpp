@@ -401,6 +401,15 @@ void complain(const std::string& file, const Error& error) {
   std::fprintf(stderr, "watertight: %s: %s\n", name.c_str(), text.c_str());
 }
 
+Exit fail(const std::string& file, const Error& error) {
+  complain(file, error);
+  return Exit::error;
+}
+
+Exit fail_to_write(const std::string& file, const Error& error) {
+  return fail(file == "-" ? "standard output" : file, error);
+}
+
 void print_findings(const std::string& file, const pipeline::FeatureOutcome& feature,
                     std::FILE* out) {
   print(text_of(lines_of(file, feature)), out);

@@ -7,6 +7,10 @@ if(WATERTIGHT_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${WATERTIGHT_CCACHE}")
 endif()
 
+# With CMAKE_UNITY_BUILD (the checked build has it) a compiler reads so many files of a folder as one.
+# A name that two of them give to different things is an error there.
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+
 # The options with which every target of the project is compiled. Contraction is off so that each
 # machine and compiler computes the same doubles.
 add_library(watertight_options INTERFACE)
@@ -15,6 +19,10 @@ target_compile_options(watertight_options INTERFACE
   -ffp-contract=off
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>
   $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${WATERTIGHT_WERROR}>>:-Werror>)
+if(CMAKE_UNITY_BUILD) # the file that a compiler is given is not that of an anonymous namespace
+  target_compile_options(watertight_options INTERFACE
+    $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
+endif()
 target_compile_definitions(watertight_options INTERFACE $<$<CONFIG:Debug>:WATERTIGHT_CHECKED=1>)
 if(WATERTIGHT_SANITIZE)
   target_compile_options(watertight_options INTERFACE
@@ -62,5 +70,6 @@ function(watertight_embed folder file kind name)
       -DNAME=${name} -DKIND=${kind} -P "${script}"
     DEPENDS "${file}" "${script}"
     VERBATIM)
+  set_source_files_properties("${source}" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(watertight_${folder} PRIVATE "${source}")
 endfunction()

@@ -16,14 +16,14 @@
 namespace watertight::codec {
 namespace {
 
-constexpr std::uint8_t kMagic[4] = {'W', 'T', 'P', 'F'};
+constexpr std::uint8_t kPageMagic[4] = {'W', 'T', 'P', 'F'};
 constexpr std::size_t kHeadBytes = 5;
 constexpr std::size_t kTailBytes = 12;
 // The largest number of pages that wait for more solids at a time, one for each frame.
 constexpr std::size_t kMaxOpenPages = 16;
 
 bool has_magic(ByteView bytes) {
-  return std::equal(std::begin(kMagic), std::end(kMagic), bytes.begin());
+  return std::equal(std::begin(kPageMagic), std::end(kPageMagic), bytes.begin());
 }
 
 Error malformed(const char* what) {
@@ -41,7 +41,7 @@ struct PageFileWriter::OpenPage {
 PageFileWriter::PageFileWriter(std::size_t page_solids, EncodeOptions options)
     : page_solids_(std::clamp<std::size_t>(page_solids, 1, kMaxPageSolids)), options_(options) {
   ByteWriter writer;
-  writer.append(kMagic);
+  writer.append(kPageMagic);
   writer.u8(kFormatVersion);
   written_ = std::move(writer).bytes();
 }
@@ -121,7 +121,7 @@ Result<Bytes> PageFileWriter::finish() && {
   tail.append(index.bytes());
   tail.u32(crc32c(index.bytes()));
   tail.u32(static_cast<std::uint32_t>(index.size()));
-  tail.append(kMagic);
+  tail.append(kPageMagic);
   Bytes result = std::move(written_);
   result.insert(result.end(), tail.bytes().begin(), tail.bytes().end());
   return result;

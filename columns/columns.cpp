@@ -30,7 +30,7 @@ extern const ByteView kXmlExample;
 
 namespace {
 
-constexpr int kKindBits = 2;
+constexpr int kTextKindBits = 2;
 constexpr std::size_t kJsonExamples = 4;  // the first of examples()
 constexpr Hash kBytesColumn = 0x42595445;
 
@@ -134,7 +134,7 @@ class TextCoder {
 
   std::string code_text(const Text& text) {
     const auto kind = static_cast<TextKind>(mixer_.symbol(
-        *stream_, Question::text_kind, {1}, kKindBits, static_cast<std::uint32_t>(text.kind)));
+        *stream_, Question::text_kind, {1}, kTextKindBits, static_cast<std::uint32_t>(text.kind)));
     switch (kind) {
       case TextKind::bytes:
         return code_bytes(text.text);

@@ -10,7 +10,7 @@ namespace {
 constexpr Hash kMarkColumn = 0x4D41524B;
 constexpr std::uint32_t kLongArray = 40;
 constexpr int kIndexBits = 14;
-constexpr Hash kTrusts = 17;
+constexpr Hash kMarkTrusts = 17;
 constexpr std::array<Question, 3> kQuestions{Question::mark_first, Question::mark_second,
                                              Question::mark_third};
 
@@ -43,7 +43,7 @@ Mark MarkCoder::code(EntropyStream& stream, ContextMixer& mixer, StringCoder& st
   Hash trust = 0;
   for (std::size_t i = 0; i < facts.size(); ++i) {
     candidates[i] = candidates_.find(facts[i]);
-    trust = trust * kTrusts + (candidates[i] ? candidates[i]->trust + 1 : 0);
+    trust = trust * kMarkTrusts + (candidates[i] ? candidates[i]->trust + 1 : 0);
   }
   std::optional<std::uint32_t> coded;
   for (std::size_t i = 0; i < facts.size() && !coded; ++i) {

@@ -27,7 +27,7 @@ namespace watertight::delaunay {
 namespace {
 
 /// The relative rounding error of one term of the sums of volumes: at most 32 operations.
-constexpr double kArithmetic = 32 * 0x1p-53;
+constexpr double kVolumeArithmetic = 32 * 0x1p-53;
 
 struct Refusal {
   CertificateRefusal refusal = CertificateRefusal::none;
@@ -421,7 +421,7 @@ class Examination {
     // Each term has a rounding of its own, and each addition that of the sum so far.
     const double additions = 6 * (static_cast<double>(data_.tetrahedra.size()) + 1) * 0x1p-53;
     const double slack =
-        volume_slack_ + terms * (kArithmetic + additions) + std::fabs(expected) * 0x1p-52;
+        volume_slack_ + terms * (kVolumeArithmetic + additions) + std::fabs(expected) * 0x1p-52;
     // Not ">": a volume that is not a number must fail.
     if (!(std::fabs(sum - expected) <= slack)) {
       return refuse(CertificateRefusal::volume_mismatch,

@@ -17,7 +17,7 @@ struct sqlite3_stmt;
 namespace watertight::geopackage {
 
 /// An identifier in quotes, for SQL.
-std::string quoted(std::string_view name);
+std::string sql_name(std::string_view name);
 
 /// A prepared statement. Parameters are numbered from 1, columns from 0. A failed bind shows as an
 /// error of the next step.

@@ -136,10 +136,10 @@ std::string Layer::type_name() const {
 Status Layer::finish(const std::string& name, std::int64_t srs, const std::string& description,
                      const CancelPoll& is_cancelled) {
   std::string create = "CREATE TABLE ";
-  create.append(quoted(name)).append(" (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom ");
+  create.append(sql_name(name)).append(" (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom ");
   create.append(type_name());
   for (const Columns::Column& column : columns_.all()) {
-    create.append(", ").append(quoted(column.name)).append(" ").append(column.type());
+    create.append(", ").append(sql_name(column.name)).append(" ").append(column.type());
   }
   create.append(has_further_ ? ", further_attributes TEXT)" : ")");
   if (Status made = database_->run(create); !made) return made;
@@ -170,7 +170,7 @@ void Layer::bind_values(Statement& insert, std::string_view row) const {
 
 Status Layer::write_rows(const std::string& name, const CancelPoll& is_cancelled) {
   const std::size_t values = columns_.all().size() + (has_further_ ? 1 : 0);
-  std::string text = "INSERT INTO " + quoted(name) + " VALUES (?, ?";
+  std::string text = "INSERT INTO " + sql_name(name) + " VALUES (?, ?";
   for (std::size_t i = 0; i < values; ++i) text += ", ?";
   auto insert = database_->prepare(text + ")");
   if (!insert) return std::move(insert).error();
@@ -198,8 +198,8 @@ Status Layer::write_rows(const std::string& name, const CancelPoll& is_cancelled
 
 Status Layer::write_index(const std::string& name) {
   const std::string index = "rtree_" + name + "_geom";
-  std::string text = "CREATE VIRTUAL TABLE " + quoted(index) +
-                     " USING rtree(id, minx, maxx, miny, maxy); INSERT INTO " + quoted(index) +
+  std::string text = "CREATE VIRTUAL TABLE " + sql_name(index) +
+                     " USING rtree(id, minx, maxx, miny, maxy); INSERT INTO " + sql_name(index) +
                      " SELECT fid, minx, maxx, miny, maxy FROM " + staged_ +
                      " WHERE geom IS NOT NULL ORDER BY fid;";
   std::string triggers(kTriggers);
@@ -209,10 +209,10 @@ Status Layer::write_index(const std::string& name) {
     mark.append(suffix).append(">");
     std::string trigger = index;
     trigger.append("_").append(suffix);
-    triggers = with(std::move(triggers), mark, quoted(trigger));
+    triggers = with(std::move(triggers), mark, sql_name(trigger));
   }
-  triggers = with(std::move(triggers), "<i>", quoted(index));
-  return database_->run(text + with(std::move(triggers), "<t>", quoted(name)));
+  triggers = with(std::move(triggers), "<i>", sql_name(index));
+  return database_->run(text + with(std::move(triggers), "<t>", sql_name(name)));
 }
 
 Status Layer::write_entries(const std::string& name, std::int64_t srs,

@@ -7,7 +7,7 @@
 namespace watertight::geopackage {
 namespace {
 
-constexpr std::int64_t kUnknownSystem = -1;
+constexpr std::int64_t kCartesianSystem = -1;
 
 // The tables of OGC 12-128r18, annex C, and of the extension gpkg_crs_wkt, annex F.10.
 constexpr const char* kTables = R"(
@@ -65,7 +65,7 @@ Result<Package> Package::create(const std::string& path, std::uint32_t srid) {
 
 Status Package::finish(Layer& layer, const std::string& name, const std::string& description,
                        const CancelPoll& is_cancelled) {
-  const std::int64_t srs = srid_ == 0 ? kUnknownSystem : std::int64_t{srid_};
+  const std::int64_t srs = srid_ == 0 ? kCartesianSystem : std::int64_t{srid_};
   return layer.finish(name, srs, description, is_cancelled);
 }
 

@@ -8,7 +8,7 @@
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::uint64_t kBatch = 100;
+constexpr std::uint64_t kExportBatch = 100;
 constexpr std::uint64_t kFirstBatch = 1;  // so that the first bytes are there soon
 constexpr std::size_t kWorthSending = 64U << 10U;
 
@@ -68,7 +68,7 @@ Result<Bytes> CollectionExport::next(const CancelPoll& is_cancelled) {
   Bytes bytes;
   const std::size_t enough = is_first_ ? 1 : kWorthSending;
   while (bytes.size() < enough && !is_last_) {
-    auto batch = store_->walk(collection_, is_first_ ? kFirstBatch : kBatch, after_, filter_);
+    auto batch = store_->walk(collection_, is_first_ ? kFirstBatch : kExportBatch, after_, filter_);
     if (!batch) return std::move(batch).error();
     if (is_first_ && batch->features.empty() && filter_) {
       return Error{ErrorCode::not_found,

@@ -6,8 +6,6 @@
 namespace watertight::server {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// The title of a kind: "Not found" for "not-found".
 std::string title_of(std::string_view kind) {
   std::string title(kind);
@@ -47,7 +45,7 @@ unsigned status_of(ErrorCode code) {
 }  // namespace
 
 Response to_response(const Problem& problem) {
-  Json json;
+  nlohmann::ordered_json json;
   json["type"] = std::string(kProblemPrefix) + problem.kind;
   json["title"] = title_of(problem.kind);
   json["status"] = problem.status;
@@ -55,14 +53,16 @@ Response to_response(const Problem& problem) {
   if (problem.byte_offset) json["byteOffset"] = *problem.byte_offset;
   if (!problem.pointer.empty()) json["pointer"] = problem.pointer;
   if (!problem.extension.empty()) {
-    const Json extension = Json::parse(problem.extension, nullptr, false);
+    const nlohmann::ordered_json extension =
+        nlohmann::ordered_json::parse(problem.extension, nullptr, false);
     if (extension.is_object()) json.update(extension);
   }
   // Details quote the sender's bytes, which need not be UTF-8: wrong bytes are replaced, nothing
   // throws.
-  Response response{problem.status, "application/problem+json",
-                    json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
-                    problem.headers};
+  Response response{
+      problem.status, "application/problem+json",
+      json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n",
+      problem.headers};
   response.note = problem.note;
   return response;
 }

@@ -15,7 +15,7 @@
 namespace watertight::store {
 namespace {
 
-constexpr std::int64_t kBatch = 200;
+constexpr std::int64_t kMovedBatch = 200;
 constexpr std::int64_t kSamples = 1000;
 constexpr std::chrono::seconds kBetweenSentences{5};
 
@@ -132,7 +132,7 @@ Result<std::uint64_t> move_batch(DatabaseSession& connection, const std::string&
                                  const std::string& name,
                                  const packing::DictionaryPointer& dictionary, SharedRows& shared) {
   connection.send("BEGIN");
-  auto batch = read_old(connection, key, name, kBatch);
+  auto batch = read_old(connection, key, name, kMovedBatch);
   if (!batch) return std::move(batch).error();
   std::vector<const StoredFeature*> features;
   std::vector<std::string_view> ids;

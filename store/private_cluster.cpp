@@ -41,9 +41,9 @@ constexpr seconds kOrphanPatience{30};
 constexpr seconds kStopPatience{30};
 constexpr seconds kUntold{2};  // waits that are shorter are not worth a sentence
 constexpr milliseconds kPoll{30};
-constexpr milliseconds kLongestPause{250};  // between two questions to a server that starts
-constexpr milliseconds kGlance{100};        // between two looks whether the server's process lives
-constexpr int kGlancesPerLook = 10;         // of which one asks the server whether it answers
+constexpr milliseconds kLongestStartPause{250};  // between two questions to a server that starts
+constexpr milliseconds kGlance{100};  // between two looks whether the server's process lives
+constexpr int kGlancesPerLook = 10;   // of which one asks the server whether it answers
 constexpr int kLogLines = 8;
 
 Error refused(std::string message) { return {ErrorCode::unavailable, std::move(message)}; }
@@ -227,7 +227,7 @@ class Cluster {
         tend_silent();
       }
       std::this_thread::sleep_for(pause);
-      pause = std::min(pause * 2, kLongestPause);
+      pause = std::min(pause * 2, kLongestStartPause);
     }
     return refused(to_string(seen) + ":\n" + last_lines(log(), kLogLines));
   }

@@ -15,7 +15,7 @@
 namespace watertight::tessellate {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using FillKernel = CGAL::Exact_predicates_exact_constructions_kernel;
 
 struct FillVertex {
   Index vertex = kNone;  // none for a crossing
@@ -26,11 +26,11 @@ struct FillFace {
   bool is_inside = false;
 };
 
-using FillVertexBase = CGAL::Triangulation_vertex_base_with_info_2<FillVertex, Kernel>;
+using FillVertexBase = CGAL::Triangulation_vertex_base_with_info_2<FillVertex, FillKernel>;
 using FillFaceBase = CGAL::Constrained_triangulation_face_base_2<
-    Kernel, CGAL::Triangulation_face_base_with_info_2<FillFace, Kernel>>;
+    FillKernel, CGAL::Triangulation_face_base_with_info_2<FillFace, FillKernel>>;
 using FillPlane = CGAL::Constrained_triangulation_plus_2<CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel, CGAL::Triangulation_data_structure_2<FillVertexBase, FillFaceBase>,
+    FillKernel, CGAL::Triangulation_data_structure_2<FillVertexBase, FillFaceBase>,
     CGAL::Exact_intersections_tag>>;
 
 Point difference(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -106,7 +106,7 @@ std::uint64_t overlapping_pairs(const Solid& solid, IndexRange rings, int axis,
 void insert_rings(FillPlane& plane, const Solid& solid, IndexRange rings, int axis) {
   const auto insert = [&](Index vertex) {
     const Point& p = solid.vertices()[vertex];
-    const auto handle = plane.insert(Kernel::Point_2(p[(axis + 1) % 3], p[(axis + 2) % 3]));
+    const auto handle = plane.insert(FillKernel::Point_2(p[(axis + 1) % 3], p[(axis + 2) % 3]));
     if (handle->info().vertex == kNone) handle->info().vertex = vertex;
     return handle;
   };

@@ -10,7 +10,7 @@
 namespace watertight::verdict {
 namespace {
 
-Point at(const Point& p, double z) { return {p.x, p.y, z}; }
+Point lifted(const Point& p, double z) { return {p.x, p.y, z}; }
 
 double turn(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -181,7 +181,7 @@ std::vector<Point> all_points(const std::vector<Ring>& rings) {
 Point tip_of(const Ring& ring, double z) {
   Point tip{0, 0, 0};
   for (const Point& p : ring) tip = plus(tip, p);
-  return at(times(tip, 1.0 / static_cast<double>(ring.size())), z);
+  return lifted(times(tip, 1.0 / static_cast<double>(ring.size())), z);
 }
 
 /// A box whose top facet has pits with a tip each; the rings of the pits touch each other and the
@@ -211,8 +211,8 @@ Shell box_with_pits(Random& random) {
       side = lifted(std::move(side), top);
       if (i == 0) {
         side = solids::reversed(std::move(side));
-        side.push_back(at(a, 0));
-        side.push_back(at(b, 0));
+        side.push_back(lifted(a, 0));
+        side.push_back(lifted(b, 0));
       } else {
         side.push_back(tip);
       }

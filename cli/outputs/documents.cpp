@@ -10,15 +10,6 @@
 #include "pipeline/pipeline.h"
 
 namespace watertight::cli {
-namespace {
-
-Exit fail(const std::string& file, const Error& error) {
-  complain(file == "-" ? "standard output" : file, error);
-  return Exit::error;
-}
-
-}  // namespace
-
 Exit save_documents(std::span<const Document> documents, const std::string& input,
                     const std::string& output, std::optional<Format> standard) {
   std::vector<std::string> names;
@@ -31,18 +22,18 @@ Exit save_documents(std::span<const Document> documents, const std::string& inpu
     }
     const auto format = name == "-" ? Result<Format>(standard.value_or(document.format))
                                     : files::format_of_name(name);
-    if (!format) return fail(name, format.error());
+    if (!format) return fail_to_write(name, format.error());
     const auto bytes = pipeline::convert_document(document, *format);
     if (!bytes) return fail(input, bytes.error());
     auto file = files::FileWriter::open(name);
-    if (!file) return fail(name, file.error());
+    if (!file) return fail_to_write(name, file.error());
     const Status written = file->write(as_text(*bytes));
-    if (!written) return fail(name, written.error());
+    if (!written) return fail_to_write(name, written.error());
     files.push_back(*std::move(file));
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Status status = files[i].commit();
-    if (!status) return fail(names[i], status.error());
+    if (!status) return fail_to_write(names[i], status.error());
   }
   return Exit::valid;
 }

@@ -27,13 +27,13 @@ struct Request {
 };
 
 /// Its answer; that to `open` comes with the file's descriptor.
-struct Answer {
+struct WriterAnswer {
   bool is_done = false;
   std::array<char, 256> reason{};  // ends with a zero byte
 };
 
-Answer answer_of(const Status& status) {
-  Answer answer;
+WriterAnswer answer_of(const Status& status) {
+  WriterAnswer answer;
   answer.is_done = status.has_value();
   if (!status) {
     const std::string& message = status.error().message;
@@ -46,7 +46,7 @@ Answer answer_of(const Status& status) {
 /// A message of one descriptor and the bytes of `answer`, as sendmsg() and recvmsg() take it.
 class Message {
  public:
-  explicit Message(Answer& answer) {
+  explicit Message(WriterAnswer& answer) {
     part_ = {&answer, sizeof(answer)};
     header_.msg_iov = &part_;
     header_.msg_iovlen = 1;
@@ -115,7 +115,7 @@ void keep_rights(int socket, const std::string& output) {
     } else {
       break;
     }
-    Answer answer = answer_of(status);
+    WriterAnswer answer = answer_of(status);
     Message message(answer);
     if (descriptor >= 0) {
       message.set(descriptor);
@@ -168,7 +168,7 @@ class Keeper {
   static Error failed() { return Error{ErrorCode::unavailable, std::strerror(errno)}; }
 
   Status ask(const Request& request, int* descriptor) {
-    Answer answer;
+    WriterAnswer answer;
     Message message(answer);
     const bool is_answered =
         until_done([&] { return ::send(socket_, &request, sizeof(request), MSG_NOSIGNAL); }) ==

@@ -28,7 +28,7 @@ struct FreeList {
 };
 
 /// The parts of an answer that a reader of ranges needs.
-struct Answer {
+struct HttpAnswer {
   long status = 0;
   Bytes body;
   bool is_too_long = false;  // the body has more bytes than were allowed
@@ -53,7 +53,7 @@ std::optional<std::uint64_t> number(std::string_view text) {
 }
 
 /// Reads "bytes 0-99/1234".
-void read_content_range(std::string_view value, Answer& answer) {
+void read_content_range(std::string_view value, HttpAnswer& answer) {
   constexpr std::string_view kUnit = "bytes ";
   if (!value.starts_with(kUnit)) return;
   value.remove_prefix(kUnit.size());
@@ -65,7 +65,7 @@ void read_content_range(std::string_view value, Answer& answer) {
 }
 
 std::size_t take_header(char* data, std::size_t /*one*/, std::size_t count, void* place) {
-  Answer& answer = *static_cast<Answer*>(place);
+  HttpAnswer& answer = *static_cast<HttpAnswer*>(place);
   const std::string_view line(data, count);
   if (line.starts_with("HTTP/")) {  // of this answer, not of the redirects before it
     answer.etag.clear();
@@ -84,7 +84,7 @@ std::size_t take_header(char* data, std::size_t /*one*/, std::size_t count, void
 }
 
 std::size_t take_body(char* data, std::size_t /*one*/, std::size_t count, void* place) {
-  Answer& answer = *static_cast<Answer*>(place);
+  HttpAnswer& answer = *static_cast<HttpAnswer*>(place);
   if (count > answer.most - std::min<std::uint64_t>(answer.most, answer.body.size())) {
     answer.is_too_long = true;
     return 0;
@@ -108,9 +108,9 @@ class HttpFile {
   }
 
   /// Asks for a range such as "0-99"; "" for the whole file.
-  Result<Answer> ask(const std::string& range, std::uint64_t most_bytes) {
+  Result<HttpAnswer> ask(const std::string& range, std::uint64_t most_bytes) {
     CURL* const handle = handle_.get();
-    Answer answer;
+    HttpAnswer answer;
     answer.most = most_bytes;
     const std::unique_ptr<curl_slist, FreeList> headers(
         validator_.empty() || range.empty()
@@ -137,7 +137,7 @@ class HttpFile {
   }
 
   /// Remembers which state of the file an answer is of, and the URL to which redirects led.
-  void remember(const Answer& answer) {
+  void remember(const HttpAnswer& answer) {
     const char* url = nullptr;
     curl_easy_getinfo(handle_.get(), CURLINFO_EFFECTIVE_URL, &url);
     if (url != nullptr) curl_easy_setopt(handle_.get(), CURLOPT_URL, std::string(url).c_str());

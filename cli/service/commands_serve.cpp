@@ -146,52 +146,48 @@ Exit run(const ServeCommand& command) {
     complain(wrong->name, wrong->error);
     return Exit::error;
   }
-  const auto fail = [](const std::string& what, const Error& error) {
+  const auto end_with = [](const std::string& what, const Error& error) {
     complain(what, error);
     // A service that was stopped before it listened has done what it was told.
     return error.code == ErrorCode::cancelled ? Exit::valid : Exit::error;
   };
   if (const Status given_up = give_up_rights(command.store); !given_up) {
-    return fail("store", given_up.error());
+    return end_with("store", given_up.error());
   }
   server::StopSignals signals;
   auto opened = open_database(command.store, signals);
-  if (!opened) return fail("store", opened.error());
+  if (!opened) return end_with("store", opened.error());
   options.connection = opened->connection;
   if (opened->cluster) {
     if (options.jobs_folder.empty()) options.jobs_folder = opened->data_directory + "/jobs";
     options.database_health = [&opened] { return opened->cluster->health(); };
   }
   const Status served = server::serve(options, signals);
-  return served ? Exit::valid : fail("serve", served.error());
+  return served ? Exit::valid : end_with("serve", served.error());
 }
 
 Exit run(const KeyCommand& command) {
-  const auto fail = [&command](const Error& error) {
-    complain(command.file, error);
-    return Exit::error;
-  };
   // The file is read first, so that no key is added to a file that is none of keys.
   std::string text;
   if (std::filesystem::exists(command.file)) {
     const auto bytes = files::read_file(command.file, Limits{});
-    if (!bytes) return fail(bytes.error());
+    if (!bytes) return fail(command.file, bytes.error());
     text = as_text(*bytes);
   }
   const auto keys = server::read_keys(text);
-  if (!keys) return fail(keys.error());
+  if (!keys) return fail(command.file, keys.error());
   for (const server::AccessKey& key : *keys) {
     if (key.name != command.name) continue;
-    return fail({ErrorCode::conflict, "there is a key with the name '" + key.name +
-                                          "'; delete its line to take it back"});
+    return fail(command.file, {ErrorCode::conflict, "there is a key with the name '" + key.name +
+                                                        "'; delete its line to take it back"});
   }
   const auto made = server::make_key(command.name, *server::scope_named(command.scope));
-  if (!made) return fail(made.error());
+  if (!made) return fail(command.file, made.error());
   std::ofstream file(command.file, std::ios::binary | std::ios::app);
   if (!text.empty() && !text.ends_with('\n')) file << '\n';
   file << made->line << '\n';
   file.close();
-  if (!file) return fail({ErrorCode::unavailable, "the file cannot be written"});
+  if (!file) return fail(command.file, {ErrorCode::unavailable, "the file cannot be written"});
   std::printf("%s\n", made->key.c_str());
   return Exit::valid;
 }

@@ -19,10 +19,10 @@ namespace {
 
 constexpr int kCandidateSteps = 256;
 constexpr int kRankBits = 32;
-constexpr Scale<32> kRooms{.per_unit = 4};  // classes of the room of a corner, for New
-constexpr double kMostAveraged = 1000;      // the number of edges that the mean edge remembers
+constexpr Scale<32> kRoomsForNew{.per_unit = 4};  // classes of the room of a corner, for New
+constexpr double kMostAveraged = 1000;  // the number of edges that the mean edge remembers
 
-Error malformed() { return {ErrorCode::malformed, "the triangles do not form a closed surface"}; }
+Error not_closed() { return {ErrorCode::malformed, "the triangles do not form a closed surface"}; }
 
 /// Codes the triangles and vertices of a solid in the order of the stream.
 class SurfaceCoder {
@@ -111,7 +111,7 @@ class SurfaceCoder {
   Status walk() {
     for (Index corner = front_.next_corner(); corner != kNone; corner = front_.next_corner()) {
       if (is_stuck_) return stuck();
-      if (stream_.failed()) return malformed();
+      if (stream_.failed()) return not_closed();
       if (front_.triangles().size() >= limits_.facets) {
         return Error{ErrorCode::limit_exceeded, "the solid has too many facets"};
       }
@@ -122,7 +122,7 @@ class SurfaceCoder {
       if (Status extended = extend(corner); !extended) return extended;
     }
     if (is_stuck_) return stuck();
-    return front_.open_count() == 0 ? Status(Done{}) : Status(malformed());
+    return front_.open_count() == 0 ? Status(Done{}) : Status(not_closed());
   }
 
   /// Codes whether a triangle fills the corner; adds the triangle or refuses the corner.
@@ -177,7 +177,7 @@ class SurfaceCoder {
     }
     const bool is_new = models_.code<kNew>(
         stream_,
-        {kRooms(gate.room), kRooms(front_[gate.previous].room), new_answers_.last(),
+        {kRoomsForNew(gate.room), kRoomsForNew(front_[gate.previous].room), new_answers_.last(),
          combine(new_answers_.last<3>(), close_answers_.last<6>())},
         is_writing() && code_of_[tip] == kNone);
     new_answers_.add(is_new);
@@ -235,7 +235,7 @@ class SurfaceCoder {
     const auto index = static_cast<std::uint64_t>(found - candidates_.begin());
     const std::uint64_t rank = models_.code_number<kRank>(
         stream_, {kNothingKnown}, found == candidates_.end() ? 0 : index + 1, kRankBits);
-    if (rank > candidates_.size() || stream_.failed()) return malformed();
+    if (rank > candidates_.size() || stream_.failed()) return not_closed();
     const auto other = rank > 0
                            ? candidates_[rank - 1].corner
                            : static_cast<Index>(stream_.code_uniform(truth, front_.gate_count()));
@@ -243,7 +243,7 @@ class SurfaceCoder {
     const bool is_neighbour = other == corner || other == gate.previous || other == gate.next ||
                               other == front_[gate.previous].previous;
     if (!target.is_open || is_neighbour) {
-      return is_writing() ? stuck() : Status(malformed());
+      return is_writing() ? stuck() : Status(not_closed());
     }
     front_.join_corner(corner, other, half_edges);
     note_gates(2);
@@ -271,7 +271,7 @@ class SurfaceCoder {
         for (std::size_t k = 0; k < 3; ++k) {
           absolute[k] = position[k] + vertices_.origin()[k];
           if (absolute[k] <= -(std::int64_t{1} << 53) || absolute[k] >= (std::int64_t{1} << 53)) {
-            return malformed();
+            return not_closed();
           }
         }
         solid.vertices.push_back(absolute);

@@ -13,12 +13,12 @@ namespace watertight::codec::parallelogram {
 
 namespace {
 
-constexpr int kMostBits = 54;  // the most bits of a difference of two coordinates
+constexpr int kDifferenceBits = 54;  // the most bits of a difference of two coordinates
 
 // Contexts (docs/format-parallelogram.md, "The stream" and "A tip"). The classes of misses and
 // lengths are logarithmic: each constant that ends in Zero is the class of 1.
-constexpr std::uint32_t kLengths = 64;  // classes of the number of bits of a difference
-constexpr int kMissZero = 4;
+constexpr std::uint32_t kDifferenceLengths = 64;  // classes of the number of bits of a difference
+constexpr int kGuessMissZero = 4;
 constexpr int kSizeZero = 1;
 constexpr int kTwoMissesZero = 2;
 constexpr int kSpreadZero = 3;
@@ -31,7 +31,7 @@ constexpr Scale<4> kParts{.per_unit = 2 * 4};    // classes of the distance to t
 constexpr Scale<8> kNormals{.per_unit = 7.999};  // classes of the size of a unit vector's component
 constexpr std::uint32_t kVerticesAround = 5;     // vertices whose coordinate a tip may repeat
 
-Error malformed() { return {ErrorCode::malformed, "a coordinate is out of range"}; }
+Error out_of_range() { return {ErrorCode::malformed, "a coordinate is out of range"}; }
 
 /// The axes in ascending order of the magnitudes of a normal's components.
 std::array<std::size_t, 3> axes_by_slope(const Vector& normal) {
@@ -47,7 +47,7 @@ std::array<std::size_t, 3> axes_by_slope(const Vector& normal) {
 
 bool is_sane(const GridPoint& vertex) {
   return std::all_of(vertex.begin(), vertex.end(), [](std::int64_t c) {
-    return c < (std::int64_t{1} << kMostBits) && c > -(std::int64_t{1} << kMostBits);
+    return c < (std::int64_t{1} << kDifferenceBits) && c > -(std::int64_t{1} << kDifferenceBits);
   });
 }
 
@@ -85,16 +85,17 @@ Status VertexCoder::add_vertex(const GridPoint& vertex, double miss) {
 template <Number number, std::uint32_t size>
 GridPoint VertexCoder::code_vertex(const GridPoint& near, const GridPoint& truth,
                                    Context<size> context) {
-  Context<kLengths> before(0U);
+  Context<kDifferenceLengths> before(0U);
   GridPoint vertex = near;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::int64_t place = places_[k].place_of(near[k]);
     const std::int64_t offset = models_.code_signed<number>(
-        stream_, {context, before}, places_[k].place_of(truth[k]) - place, kMostBits);
+        stream_, {context, before}, places_[k].place_of(truth[k]) - place, kDifferenceBits);
     const auto value = places_[k].value_of(place + offset);
     if (!value) stream_.fail();
     vertex[k] = value.value_or(near[k]);
-    before = capped<kLengths>(std::bit_width(static_cast<std::uint64_t>(std::abs(offset))));
+    before =
+        capped<kDifferenceLengths>(std::bit_width(static_cast<std::uint64_t>(std::abs(offset))));
   }
   return vertex;
 }
@@ -117,7 +118,7 @@ Status VertexCoder::code_seed(std::uint32_t number, const GridPoint* position) {
     stream_.enter(StreamPart::coordinates);
     vertex = code_vertex<kSeed>(positions_.back(), relative(position), Context<3>(number));
   }
-  if (!is_sane(vertex) || stream_.failed()) return malformed();
+  if (!is_sane(vertex) || stream_.failed()) return out_of_range();
   if (Status added = add_vertex(vertex, 0); !added) return added;
   if (number < 2) return Done{};
   const std::size_t first = positions_.size() - 3;
@@ -132,7 +133,7 @@ VertexCoder::TipContexts VertexCoder::contexts_of_tip(const SurfaceFront& front,
   const double expected = 0.5 * (misses_[gate.start] + misses_[gate.end]);
   Guess guess(0U);
   if (has_guesses_) {
-    guess = code_guess(front, gate, truth, log_bucket<kMisses>(expected, kMissZero));
+    guess = code_guess(front, gate, truth, log_bucket<kMisses>(expected, kGuessMissZero));
   }
   const double apart = length(tip.guesses[0] - tip.guesses[1]);
   const double both = misses_[gate.apex] + misses_[front[gate.next].end];
@@ -142,7 +143,7 @@ VertexCoder::TipContexts VertexCoder::contexts_of_tip(const SurfaceFront& front,
           .size = log_bucket<kMisses>(tip.size, kSizeZero),
           .spread = log_bucket<kSpreads>(apart / (kSpreadPart * expected + 1), kSpreadZero),
           .least_miss =
-              log_bucket<kMisses>(std::min(misses_[gate.start], misses_[gate.end]), kMissZero),
+              log_bucket<kMisses>(std::min(misses_[gate.start], misses_[gate.end]), kGuessMissZero),
           .apex_miss = log_bucket<kMisses>(both, kTwoMissesZero)};
 }
 
@@ -155,7 +156,8 @@ std::int64_t VertexCoder::code_coordinate(const TipContexts& tip, const Axis& ax
   const double part = where - nearest;  // -0.5 to 0.5
   const std::int64_t side = part < 0 ? -1 : 1;
   const auto base = static_cast<std::int64_t>(nearest);
-  const auto miss = log_bucket<kMisses>(places.spread_of(expectation, tip.expected), kMissZero);
+  const auto miss =
+      log_bucket<kMisses>(places.spread_of(expectation, tip.expected), kGuessMissZero);
   const auto parts = kParts(std::abs(part));
   const std::int64_t offset =
       side * models_.code_signed<kResidual>(
@@ -163,7 +165,7 @@ std::int64_t VertexCoder::code_coordinate(const TipContexts& tip, const Axis& ax
                  {combine(miss, parts, axis.rank), combine(tip.size, tip.missed, axis.rank),
                   combine(tip.source, tip.missed, parts), combine(miss, tip.spread, tip.missed),
                   combine(tip.least_miss, tip.apex_miss, axis.rank), miss},
-                 side * (places.place_of(truth) - base), kMostBits);
+                 side * (places.place_of(truth) - base), kDifferenceBits);
   const auto value = places.value_of(base + offset);
   if (!value) stream_.fail();
   return value.value_or(0);
@@ -196,7 +198,7 @@ Status VertexCoder::code_tip(const SurfaceFront& front, Index corner, const Grid
     const auto missed = log_bucket<kAxisMisses>(std::abs(miss), kAxisMissZero);
     if (missed.value > tip.missed.value) tip.missed = missed;
   }
-  if (!is_sane(vertex) || stream_.failed()) return malformed();
+  if (!is_sane(vertex) || stream_.failed()) return out_of_range();
   prediction_.learn(centre, tip.expected);
   if (Status added = add_vertex(vertex, length(centre - predicted)); !added) return added;
   guesses_.back() = static_cast<std::uint8_t>(tip.guess.value);

@@ -22,12 +22,13 @@ constexpr std::array<double, 11> kBends{0.96592582628906828,  0.8660254037844386
                                         -0.70710678118654752, -0.86602540378443865,
                                         -0.96592582628906828};
 /// The bounds of the angle between two spheres are the same cosines.
-constexpr auto& kAngles = kBends;
+constexpr auto& kSphereBends = kBends;
 
 // Fixed by the format (docs/format-walk.md, "Contexts of Candidate and Distant").
 constexpr double kFlat = 1e-18;  // the greatest squared distance from a plane, in grid steps, that
                                  // counts as 0
-constexpr std::array<double, 4> kDistances2{1, 9, 100, 2500};  // squared distances, in grid steps
+constexpr std::array<double, 4> kSquaredDistances{1, 9, 100,
+                                                  2500};  // squared distances, in grid steps
 constexpr int kLeastRadius = -2;         // log2 of the square at which the first class ends
 constexpr int kLeastParallelogram = -6;  // log2 of the square at which the first class ends
 constexpr double kGabriel2 = 1.69;       // square of the ratio of radii from which a side counts
@@ -100,7 +101,7 @@ Continuation continuation(const Gate& gate, const Point& w) {
   std::uint32_t deviation = 0;
   if (!is_flat) {
     deviation = 1;
-    for (const double distance2 : kDistances2) {
+    for (const double distance2 : kSquaredDistances) {
       if (height2 > distance2 * gate.normal2) ++deviation;
     }
   }
@@ -141,7 +142,7 @@ FaceShape face_shape(std::span<const Point> points, const Triangle& face,
   if (least > 0) {
     const Vector between = spheres[0].centre - spheres[1].centre;
     const double cosine = (r0 + r1 - dot(between, between)) / (2 * std::sqrt(r0 * r1));
-    shape.sphere = static_cast<std::uint8_t>(class_below(kAngles, cosine));
+    shape.sphere = static_cast<std::uint8_t>(class_below(kSphereBends, cosine));
     shape.ratio = static_cast<std::uint8_t>(octave<kRatioClasses - 2>(most / least, 0).value);
   } else {
     // A face of the hull has only one circumsphere. Its class is the squared ratio of the radius of

@@ -18,7 +18,7 @@
 namespace watertight::codec {
 namespace {
 
-constexpr std::uint8_t kMagic[2] = {'W', 'T'};
+constexpr std::uint8_t kSolidMagic[2] = {'W', 'T'};
 constexpr std::uint8_t kPageFlag = 0x80;  // this bit of the version byte marks a page
 constexpr std::size_t kHeaderBytes = 4;
 
@@ -147,7 +147,7 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
   const std::uint8_t second = reader.u8();
   const std::uint8_t version = reader.u8();
   if (reader.failed()) return reader.error("header");
-  if (first != kMagic[0] || second != kMagic[1]) {
+  if (first != kSolidMagic[0] || second != kSolidMagic[1]) {
     return Error{ErrorCode::malformed, "this is not a blob: it does not start with WT", 0};
   }
   if ((version & 0x7FU) != kFormatVersion) {
@@ -210,7 +210,7 @@ Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, Pag
     }
   }
   ByteWriter writer;
-  writer.append(kMagic);
+  writer.append(kSolidMagic);
   writer.u8(static_cast<std::uint8_t>(kFormatVersion | (kind == PageKind::page ? kPageFlag : 0U)));
   writer.u8(page.models);
   writer.append(std::move(stream).finish());

@@ -17,7 +17,7 @@ namespace {
 
 using Priors = std::array<ModelBank, kModelParts>;
 
-constexpr std::uint8_t kMagic[3] = {'W', 'T', 'M'};
+constexpr std::uint8_t kModelSetMagic[3] = {'W', 'T', 'M'};
 
 ModelBank neutral(ModelPart part) { return ModelBank(layout_of(part)); }
 
@@ -90,7 +90,7 @@ ModelSet::~ModelSet() {
 Bytes write_models(const Priors& banks, std::uint8_t number,
                    const std::array<PriorShape, kModelParts>& shapes) {
   ByteWriter writer;
-  writer.append(kMagic);
+  writer.append(kModelSetMagic);
   writer.u8(number);
   for (std::size_t i = 0; i < kModelParts; ++i) {
     const Bytes state = banks[i].save(shapes[i]);
@@ -103,7 +103,7 @@ Bytes write_models(const Priors& banks, std::uint8_t number,
 Result<Priors> read_models(ByteView file, std::uint8_t number) {
   ByteReader reader(file);
   bool fits = true;
-  for (const std::uint8_t byte : kMagic) fits = fits && reader.u8() == byte;
+  for (const std::uint8_t byte : kModelSetMagic) fits = fits && reader.u8() == byte;
   fits = fits && reader.u8() == number;
   Priors priors = neutral_priors();
   for (ModelBank& bank : priors) fits = fits && bank.load(reader.take(reader.varint()));

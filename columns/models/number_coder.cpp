@@ -7,9 +7,9 @@
 namespace watertight::columns {
 namespace {
 
-constexpr int kModelledBits = 3;
+constexpr int kResidualBits = 3;
 constexpr NumberForm::Kind kNoNumber = NumberForm::Kind::count;
-constexpr int kMemory = 3;  // a length of a residual counts for 1/8 in the usual length
+constexpr int kNumberMemory = 3;  // a length of a residual counts for 1/8 in the usual length
 
 }  // namespace
 
@@ -80,7 +80,7 @@ std::int64_t NumberColumn::code_number(EntropyStream& stream, ContextMixer& mixe
                     hash_of(static_cast<Hash>(form_ ? form_->kind : NumberForm::Kind::count), which,
                             last_residual_),
                     hash_of(column, sibling)},
-                   magnitude(residual), kModelledBits);
+                   magnitude(residual), kResidualBits);
   const auto length = static_cast<std::uint32_t>(std::bit_width(size));
   bool is_negative = false;
   if (size > 0) {
@@ -90,7 +90,7 @@ std::int64_t NumberColumn::code_number(EntropyStream& stream, ContextMixer& mixe
   }
   const auto bits = static_cast<std::int64_t>(is_negative ? 0 - size : size);
   const std::int64_t coded = sum(predicted[best], bits);
-  judge(misses_, predicted, coded, kMemory);
+  judge(misses_, predicted, coded, kNumberMemory);
   last_residual_ = length * 2 + (is_negative ? 1 : 0);
   take(coded);
   return coded;

@@ -11,7 +11,7 @@ constexpr std::uint32_t kLongMatch = 31;
 constexpr std::size_t kFarPosition = 40;
 constexpr std::uint32_t kCopied = 8;  // a match of this length goes on as a copy
 constexpr std::size_t kMostCopied = 4096;
-constexpr int kModelledBits = 4;
+constexpr int kCopyLengthBits = 4;
 constexpr Hash kTag = 0x5354'5200;  // tells contexts of characters from those of other questions
 
 }  // namespace
@@ -77,7 +77,7 @@ std::size_t StringCoder::copy(EntropyStream& stream, ContextMixer& mixer, Hash c
     const std::size_t most = std::min(rest.size(), kMostCopied);
     while (size < most && copied(size) != 0 && copied(size) == rest[size]) ++size;
   }
-  size = mixer.number(stream, Question::copy_length, {column, 0}, size, kModelledBits);
+  size = mixer.number(stream, Question::copy_length, {column, 0}, size, kCopyLengthBits);
   if (size > kMostCopied) stream.fail();
   if (size > most_bytes) is_over_limit_ = true;
   if (is_over_limit_) stream.fail();

@@ -12,7 +12,7 @@ constexpr std::size_t kTextSize = 36;
 constexpr char kPlaceholder = '\1';
 constexpr std::size_t kVersionDigit = 12;  // the version
 constexpr std::size_t kVariantDigit = 16;  // the variant, in its upper bits
-constexpr int kDistanceBits = 4;
+constexpr int kUuidDistanceBits = 4;
 constexpr int kDigitBits = 4;
 constexpr std::string_view kSmall = "0123456789abcdef";
 constexpr std::string_view kCapital = "0123456789ABCDEF";
@@ -132,7 +132,7 @@ std::optional<std::uint32_t> UuidCoder::code_known(EntropyStream& stream, Contex
   }
   const std::uint32_t newest = known_.size() - 1;
   const std::uint64_t distance = mixer.number(stream, Question::uuid_distance, {column},
-                                              newest - known.value_or(newest), kDistanceBits);
+                                              newest - known.value_or(newest), kUuidDistanceBits);
   if (distance > newest) {
     stream.fail();
     return 0;

@@ -11,7 +11,7 @@ namespace {
 __extension__ using Wide = __int128;
 
 constexpr std::int32_t kAlways = 4096;
-constexpr int kMemory = 4;
+constexpr int kHitMemory = 4;
 // Coordinates beyond it have no guesses, so that sums stay in range.
 constexpr std::int64_t kLimit = std::int64_t{1} << 60;
 
@@ -69,7 +69,7 @@ void LineGuesses::learn_grid(const Place& place) {
   if (unit_ == 0) return;
   for (std::size_t i = 0; i < kSizes.size(); ++i) {
     const bool is_hit = is_on_grid(place, kSizes[i] * unit_);
-    hits_[i] += ((is_hit ? kAlways : 0) - hits_[i]) / (1 << kMemory);
+    hits_[i] += ((is_hit ? kAlways : 0) - hits_[i]) / (1 << kHitMemory);
   }
 }
 

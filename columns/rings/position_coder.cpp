@@ -7,8 +7,8 @@
 namespace watertight::columns {
 namespace {
 
-constexpr int kModelledBits = 4;
-constexpr int kMemory = 4;
+constexpr int kPositionResidualBits = 4;
+constexpr int kPositionMemory = 4;
 constexpr int kIndexBits = 12;
 constexpr std::uint32_t kFewPositions = 6;
 constexpr std::size_t kMostKnown = 4096;
@@ -212,7 +212,7 @@ std::int64_t PositionCoder::code_number(EntropyStream& stream, ContextMixer& mix
                    {hash_of(column, which, where), hash_of(column, list.last_size[axis], others),
                     hash_of(which, list.last_size[axis], axis),
                     hash_of(column, denied, axis > 0 ? list.last_size[0] : 0)},
-                   magnitude(residual), kModelledBits);
+                   magnitude(residual), kPositionResidualBits);
   const auto length = static_cast<std::uint32_t>(std::bit_width(size));
   const bool is_negative =
       size > 0 && mixer.flag(stream, Question::coordinate_sign,
@@ -273,7 +273,7 @@ std::optional<std::string> PositionCoder::code(EntropyStream& stream, ContextMix
     stream.fail();
     return printed;
   }
-  if (list.count > 0) judge(list.misses[axis], predictions(list, axis), number, kMemory);
+  if (list.count > 0) judge(list.misses[axis], predictions(list, axis), number, kPositionMemory);
   list.position[axis] = number;
   list.known[axis].add(number);
   if (axis + 1 == place.axes) take(list, place.axes);

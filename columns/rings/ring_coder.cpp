@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostRecent = 256;
 constexpr std::ptrdiff_t kLatest = 16;
 constexpr std::uint32_t kFarPosition = 5;
-constexpr int kModelledBits = 4;
+constexpr int kRankBits = 4;
 
 }  // namespace
 
@@ -129,7 +129,7 @@ std::optional<VertexNumber> RingCoder::code(EntropyStream& stream, ContextMixer&
     const std::uint64_t coded =
         mixer.number(stream, Question::recent_rank,
                      {hash_of(where, last), hash_of(where, last_rank_), hash_of(where, known)},
-                     rank.value_or(0), kModelledBits);
+                     rank.value_or(0), kRankBits);
     last_rank_ = static_cast<std::uint32_t>(std::bit_width(coded));
     const auto found = of_rank(guessed, coded);
     if (!found) stream.fail();

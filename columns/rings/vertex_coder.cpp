@@ -7,8 +7,8 @@
 namespace watertight::columns {
 namespace {
 
-constexpr int kModelledBits = 4;
-constexpr int kMemory = 4;             // a length of a residual counts for 1/16 in the usual length
+constexpr int kVertexResidualBits = 4;
+constexpr int kVertexMemory = 4;       // a length of a residual counts for 1/16 in the usual length
 constexpr std::size_t kMostEqual = 4;  // coordinates of neighbours that are asked about
 constexpr std::size_t kMostCorners = 64;  // of a vertex that are looked at
 constexpr std::array<Question, 3> kAxes{Question::coordinate_x, Question::coordinate_y,
@@ -225,14 +225,14 @@ std::optional<std::string> VertexCoder::code(EntropyStream& stream, ContextMixer
     const std::uint64_t size =
         mixer.number(stream, kAxes[axis_],
                      {hash_of(which, known), hash_of(others, known), last_residual_[axis_], 0},
-                     magnitude(residual), kModelledBits);
+                     magnitude(residual), kVertexResidualBits);
     const auto length = static_cast<std::uint32_t>(std::bit_width(size));
     const bool is_negative =
         size > 0 && mixer.flag(stream, Question::coordinate_sign,
                                {hash_of(axis, others), hash_of(axis, which), hash_of(axis, length)},
                                residual < 0);
     number = sum(predicted[best], static_cast<std::int64_t>(is_negative ? 0 - size : size));
-    judge(misses_[axis_], predicted, number, kMemory);
+    judge(misses_[axis_], predicted, number, kVertexMemory);
     last_residual_[axis_] = length * 2 + (is_negative ? 1 : 0);
   }
   return take(stream, form, number, {number, form.decimals});

@@ -31,7 +31,7 @@ namespace watertight::delaunay {
 namespace {
 
 /// Rings with more vertices are not given to the cubic dynamic programme.
-constexpr std::size_t kLargestRing = 60;
+constexpr std::size_t kLargestMeasuredRing = 60;
 /// The most flips on a facet, for each of its vertices.
 constexpr std::size_t kFlipsPerVertex = 3;
 
@@ -277,9 +277,9 @@ std::vector<Triangle> fewest_missing(const LocalFacet& facet, const DelaunayFace
 }
 
 /// Flips diagonals of the canonical triangulation while that makes more Delaunay faces.
-class Flips {
+class DiagonalFlips {
  public:
-  Flips(const LocalFacet& facet, const DelaunayFaces& faces)
+  DiagonalFlips(const LocalFacet& facet, const DelaunayFaces& faces)
       : facet_(facet), faces_(faces), triangles_(facet.canonical) {
     // The numbering of the triangles is the caller's: sorting gives the flips a defined order.
     for (Triangle& t : triangles_)
@@ -361,11 +361,11 @@ class Flips {
 std::vector<Triangle> follow_locally(const LocalFacet& facet, DelaunayFaces& faces,
                                      const std::vector<Index>& local_of) {
   if (auto found = Walk(facet, faces, local_of).run()) return std::move(*found);
-  if (facet.rings.size() == 1 && facet.rings[0].size() <= kLargestRing) {
+  if (facet.rings.size() == 1 && facet.rings[0].size() <= kLargestMeasuredRing) {
     std::vector<Triangle> found = fewest_missing(facet, faces);
     if (found.size() == facet.canonical.size()) return found;
   }
-  return Flips(facet, faces).run();
+  return DiagonalFlips(facet, faces).run();
 }
 
 /// Chooses the diagonal of a facet with four vertices as the functions above would: with the fewest
@@ -431,7 +431,7 @@ Result<FollowingTriangles> follow_delaunay(const Solid& merged,
     const auto own =
         std::span(canonical.triangles)
             .subspan(canonical.first[facet], canonical.first[facet + 1] - canonical.first[facet]);
-    // A facet of k <= kLargestRing vertices may take k^3 steps, a larger one about k log k.
+    // A facet of k <= kLargestMeasuredRing vertices may take k^3 steps, a larger one about k log k.
     if (cancellation.is_due_and_wanted(1 + 16 * own.size())) {
       return Error{ErrorCode::cancelled, "cancelled by the caller"};
     }

@@ -29,7 +29,7 @@ namespace watertight::delaunay {
 namespace {
 
 /// The relative rounding error of one term of the sums below: at most 32 operations.
-constexpr double kArithmetic = 32 * 0x1p-53;
+constexpr double kPlaneArithmetic = 32 * 0x1p-53;
 
 }  // namespace
 
@@ -318,13 +318,14 @@ FacetSurfaces::Plane FacetSurfaces::plane_of(Index facet) const {
     }
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    plane.slack += kArithmetic * terms[axis] * reach[axis];
+    plane.slack += kPlaneArithmetic * terms[axis] * reach[axis];
     const double scale = unit_[axis] * solid_.lattice().scale(static_cast<int>(axis));
     plane.world_length += (plane.normal[axis] / scale) * (plane.normal[axis] / scale);
   }
   plane.world_length = std::sqrt(plane.world_length);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    plane.slack += std::fabs(plane.normal[axis]) * (rounding_[axis] / unit_[axis] + kArithmetic);
+    plane.slack +=
+        std::fabs(plane.normal[axis]) * (rounding_[axis] / unit_[axis] + kPlaneArithmetic);
   }
   return plane;
 }
@@ -499,9 +500,9 @@ std::optional<FacetFault> FacetSurfaces::check_area(Index facet,
     const std::array<double, 2> c{p[2][0] - p[0][0], p[2][1] - p[0][1]};
     // Each corner may be off by `moved`, which changes the doubled area by at most four times the
     // extents of the triangle times `moved`; the arithmetic changes it by less.
-    slack +=
-        4 * ((std::fabs(b[0]) + std::fabs(c[0])) * (moved[1] + kArithmetic) +
-             (std::fabs(b[1]) + std::fabs(c[1])) * (moved[0] + kArithmetic) + moved[0] * moved[1]);
+    slack += 4 * ((std::fabs(b[0]) + std::fabs(c[0])) * (moved[1] + kPlaneArithmetic) +
+                  (std::fabs(b[1]) + std::fabs(c[1])) * (moved[0] + kPlaneArithmetic) +
+                  moved[0] * moved[1]);
     return std::fabs(b[0] * c[1] - b[1] * c[0]);
   };
   double expected = 0;

@@ -11,24 +11,20 @@
 namespace watertight::formats {
 namespace {
 
-Error wrong(std::string message, std::string pointer) {
-  return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
-}
-
 Result<std::array<GridNumber, kMatrixSize>> read_matrix(const Json& geometry,
                                                         const std::string& pointer) {
   const Json* values = find_member(geometry, "transformationMatrix");
   const bool is_matrix = values != nullptr && values->is_array() && values->size() == kMatrixSize &&
                          std::all_of(values->begin(), values->end(), is_number_value);
-  if (!is_matrix) return wrong("a transformationMatrix needs 16 numbers", pointer);
+  if (!is_matrix) return malformed_at("a transformationMatrix needs 16 numbers", pointer);
   std::array<GridNumber, kMatrixSize> matrix;
   for (std::size_t i = 0; i < kMatrixSize; ++i) {
     auto exact = exact_number(json_text((*values)[i]));
-    if (!exact) return wrong(exact.error().message, pointer + pointer_token(i));
+    if (!exact) return malformed_at(exact.error().message, pointer + pointer_token(i));
     matrix[i] = exact->value;
   }
   const auto placement = placement_of_matrix(matrix, {});
-  if (!placement) return wrong(placement.error().message, pointer);
+  if (!placement) return malformed_at(placement.error().message, pointer);
   return matrix;
 }
 
@@ -39,17 +35,17 @@ Result<std::array<GridNumber, 3>> anchor_of(const CityModel& model, const Instan
   const auto vertex =
       std::find_if(tokens.begin(), tokens.end(), [](BoundaryToken t) { return t < kClose; });
   if (vertex == tokens.end()) {
-    return wrong("a geometry instance needs the vertex it stands on", pointer);
+    return malformed_at("a geometry instance needs the vertex it stands on", pointer);
   }
   const VertexList& list = model.vertices;
   if (auto status = check_vertices(tokens, list); !status) {
-    return wrong(status.error().message, pointer + status.error().pointer);
+    return malformed_at(status.error().message, pointer + status.error().pointer);
   }
   auto points = list.are_integers ? geometry::lattice_of_integers(
                                         {&list.integers[*vertex], 1},
                                         header.transform.value_or(geometry::Transform{}))
                                   : geometry::lattice_of_decimals({&list.decimals[*vertex], 1});
-  if (!points) return wrong(points.error().message, pointer);
+  if (!points) return malformed_at(points.error().message, pointer);
   // The origin of a lattice with one point is that point, unless its coordinates are on no decimal
   // grid.
   if (points->lattice.kind == LatticeKind::decimal) return points->lattice.origin;
@@ -67,18 +63,20 @@ Result<InstanceRef> read_instance(const Json& geometry, const std::string& point
                                   std::uint64_t template_count) {
   const Json* number = find_member(geometry, "template");
   if (number == nullptr || !number->is_number_unsigned()) {
-    return wrong("a geometry instance needs the index of its template", pointer + "/template");
+    return malformed_at("a geometry instance needs the index of its template",
+                        pointer + "/template");
   }
   InstanceRef ref;
   ref.template_number = number->get<std::uint64_t>();
   if (ref.template_number >= template_count) {
-    return wrong("template " + std::to_string(ref.template_number) + " is out of range (" +
-                     quantity(template_count, "template") + ')',
-                 pointer + "/template");
+    return malformed_at("template " + std::to_string(ref.template_number) + " is out of range (" +
+                            quantity(template_count, "template") + ')',
+                        pointer + "/template");
   }
   const Json* boundaries = find_member(geometry, "boundaries");
   if (boundaries == nullptr) {
-    return wrong("a geometry instance needs the vertex it stands on", pointer + "/boundaries");
+    return malformed_at("a geometry instance needs the vertex it stands on",
+                        pointer + "/boundaries");
   }
   ref.boundary = boundaries->get<std::size_t>();
   auto matrix = read_matrix(geometry, pointer + "/transformationMatrix");

@@ -9,10 +9,6 @@
 namespace watertight::formats {
 namespace {
 
-Error wrong(std::string message, std::string pointer) {
-  return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
-}
-
 std::string geometry_pointer(std::string_view id, std::size_t geometry) {
   return "/CityObjects" + pointer_token(id) + "/geometry" + pointer_token(geometry);
 }
@@ -21,13 +17,13 @@ Status read_axes(const Json& transform, std::string_view name, std::array<GridNu
   const std::string pointer = "/transform" + pointer_token(name);
   const Json* values = find_member(transform, name);
   if (values == nullptr || !values->is_array() || values->size() != 3) {
-    return wrong("a transform needs three numbers for each of scale and translate", pointer);
+    return malformed_at("a transform needs three numbers for each of scale and translate", pointer);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Json& value = (*values)[axis];
-    if (!is_number_value(value)) return wrong("not a number", pointer + pointer_token(axis));
+    if (!is_number_value(value)) return malformed_at("not a number", pointer + pointer_token(axis));
     auto exact = exact_number(json_text(value));
-    if (!exact) return wrong(exact.error().message, pointer + pointer_token(axis));
+    if (!exact) return malformed_at(exact.error().message, pointer + pointer_token(axis));
     axes[axis] = exact->value;
   }
   return Done{};
@@ -41,8 +37,8 @@ Result<geometry::Transform> read_transform(const Json& value) {
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (transform.scale[axis].mantissa <= 0) {
-      return wrong("the scale of a transform must be positive",
-                   "/transform/scale" + pointer_token(axis));
+      return malformed_at("the scale of a transform must be positive",
+                          "/transform/scale" + pointer_token(axis));
     }
   }
   return transform;
@@ -72,16 +68,17 @@ std::optional<std::string> pointer_to_fault(const Json& boundaries) {
 }
 
 Error wrong_boundaries(const Json& boundaries, const std::string& pointer) {
-  return wrong("boundaries are nested arrays of vertex indices",
-               pointer + "/boundaries" + pointer_to_fault(boundaries).value_or(""));
+  return malformed_at("boundaries are nested arrays of vertex indices",
+                      pointer + "/boundaries" + pointer_to_fault(boundaries).value_or(""));
 }
 
 Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref,
                       std::uint64_t template_count, ModelIndex& index) {
   const std::string pointer = geometry_pointer(id, ref.geometry);
-  if (!geometry.is_object()) return wrong("a geometry must be an object", pointer);
+  if (!geometry.is_object()) return malformed_at("a geometry must be an object", pointer);
   const Json* type = find_member(geometry, "type");
-  if (type == nullptr || !type->is_string()) return wrong("the geometry has no type", pointer);
+  if (type == nullptr || !type->is_string())
+    return malformed_at("the geometry has no type", pointer);
   ref.type = type->get<std::string>();
   if (const Json* lod = find_member(geometry, "lod"); lod != nullptr) {
     ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
@@ -98,7 +95,7 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
     index.instances.push_back(*std::move(instance));
   }
   if (boundaries == nullptr) {
-    if (ref.is_of_solids()) return wrong("the geometry has no boundaries", pointer);
+    if (ref.is_of_solids()) return malformed_at("the geometry has no boundaries", pointer);
     return Done{};
   }
   ref.boundary = boundaries->get<std::size_t>();
@@ -121,12 +118,14 @@ Status index_object(const Json& object, std::uint32_t number, std::uint64_t temp
                     ModelIndex& index) {
   const std::string& id = index.ids[number];
   const std::string pointer = "/CityObjects" + pointer_token(id);
-  if (!object.is_object()) return wrong("a city object must be an object", pointer);
+  if (!object.is_object()) return malformed_at("a city object must be an object", pointer);
   const Json* type = find_member(object, "type");
-  if (type == nullptr || !type->is_string()) return wrong("the city object has no type", pointer);
+  if (type == nullptr || !type->is_string())
+    return malformed_at("the city object has no type", pointer);
   const Json* geometries = find_member(object, "geometry");
   if (geometries == nullptr) return Done{};
-  if (!geometries->is_array()) return wrong("geometry must be an array", pointer + "/geometry");
+  if (!geometries->is_array())
+    return malformed_at("geometry must be an array", pointer + "/geometry");
   std::uint32_t position = 0;
   for (const Json& geometry : geometries->get_ref<const Json::array_t&>()) {
     GeometryRef ref{number, position++, 0, {}, {}};
@@ -158,12 +157,12 @@ Status check_children(const Json& object, std::string_view id,
   const Json* children = find_member(object, "children");
   if (children == nullptr) return Done{};
   const std::string pointer = "/CityObjects" + pointer_token(id) + "/children";
-  if (!children->is_array()) return wrong("children must be an array", pointer);
+  if (!children->is_array()) return malformed_at("children must be an array", pointer);
   for (std::size_t i = 0; i < children->size(); ++i) {
     const Json& child = (*children)[i];
     if (!child.is_string() || !by_id.contains(child.get_ref<const std::string&>())) {
-      return wrong("the child is not the id of a city object in CityObjects",
-                   pointer + pointer_token(i));
+      return malformed_at("the child is not the id of a city object in CityObjects",
+                          pointer + pointer_token(i));
     }
   }
   return Done{};
@@ -181,8 +180,8 @@ void find_roots(std::vector<Index>& parent, ModelIndex& index) {
     while (index.root_of[at] == kNone && parent[at] != kNone) {
       if (is_in_chain[at]) {
         note_unreadable(index, at, {},
-                        wrong("the city object is its own ancestor",
-                              "/CityObjects" + pointer_token(index.ids[at]) + "/parents"));
+                        malformed_at("the city object is its own ancestor",
+                                     "/CityObjects" + pointer_token(index.ids[at]) + "/parents"));
         parent[at] = kNone;
         break;
       }
@@ -225,6 +224,10 @@ std::optional<std::int64_t> as_integer(const GridNumber& number) {
 
 }  // namespace
 
+Error malformed_at(std::string message, std::string pointer) {
+  return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
+}
+
 void require_integers(VertexList& list) {
   if (list.are_integers) return;
   std::vector<FaultyVertex> faulty;
@@ -258,7 +261,7 @@ Result<CityHeader> city_header(const Json& root) {
   CityHeader header;
   const Json* version = find_member(root, "version");
   if (version == nullptr || !version->is_string()) {
-    return wrong("a CityJSON needs a version (\"1.0\", \"1.1\" or \"2.0\")", "/version");
+    return malformed_at("a CityJSON needs a version (\"1.0\", \"1.1\" or \"2.0\")", "/version");
   }
   header.version = version->get<std::string>();
   if (!is_known_version(header.version)) {
@@ -276,7 +279,7 @@ Result<CityHeader> city_header(const Json& root) {
   if (const Json* section = find_member(root, "geometry-templates"); section != nullptr) {
     const Json* templates = find_member(*section, "templates");
     if (templates == nullptr || !templates->is_array()) {
-      return wrong("templates is missing or not an array", "/geometry-templates/templates");
+      return malformed_at("templates is missing or not an array", "/geometry-templates/templates");
     }
     header.template_count = templates->size();
   }
@@ -286,9 +289,10 @@ Result<CityHeader> city_header(const Json& root) {
 Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count) {
   const Json* objects = find_member(model.root, "CityObjects");
   if (objects == nullptr || !objects->is_object()) {
-    return wrong("CityObjects is missing or not an object", "/CityObjects");
+    return malformed_at("CityObjects is missing or not an object", "/CityObjects");
   }
-  if (!model.vertices.is_present) return wrong("vertices is missing or not an array", "/vertices");
+  if (!model.vertices.is_present)
+    return malformed_at("vertices is missing or not an array", "/vertices");
 
   ModelIndex index;
   const auto& members = objects->get_ref<const Json::object_t&>();

@@ -89,6 +89,9 @@ struct CitySolid {
   std::size_t boundary = 0;
 };
 
+/// The error malformed with a JSON Pointer.
+Error malformed_at(std::string message, std::string pointer);
+
 /// Checks the shape of the document and finds geometries and top-level objects. Geometry instances
 /// may refer to `template_count` templates. Faults of one object become unreadable parts. Errors:
 /// malformed with JSON Pointer.

@@ -11,10 +11,6 @@ namespace {
 
 constexpr std::string_view kTemplates = "/geometry-templates/templates";
 
-Error wrong(std::string message, std::string pointer) {
-  return Error{ErrorCode::malformed, std::move(message), {}, std::move(pointer)};
-}
-
 // Makes the templates' boundaries and vertices a model of their own, so that solids are cut, and
 // errors found, as in a document.
 class TemplateReader {
@@ -26,7 +22,7 @@ class TemplateReader {
   Result<ModelIndex> read() {
     const Json* templates = find_member(section_, "templates");
     if (templates == nullptr || !templates->is_array()) {
-      return wrong("templates is missing or not an array", std::string(kTemplates));
+      return malformed_at("templates is missing or not an array", std::string(kTemplates));
     }
     if (auto status = read_vertices(); !status) return status.error();
     ModelIndex index;
@@ -57,7 +53,7 @@ class TemplateReader {
     const std::string pointer = "/geometry-templates/vertices-templates";
     const Json* vertices = find_member(section_, "vertices-templates");
     if (vertices == nullptr || !vertices->is_array()) {
-      return wrong("vertices-templates is missing or not an array", pointer);
+      return malformed_at("vertices-templates is missing or not an array", pointer);
     }
     VertexList& list = model_.vertices;
     list.are_integers = false;
@@ -66,14 +62,15 @@ class TemplateReader {
     for (std::size_t i = 0; i < vertices->size(); ++i) {
       const Json& vertex = (*vertices)[i];
       if (!vertex.is_array() || vertex.size() != 3) {
-        return wrong("a vertex is an array of three numbers", pointer + pointer_token(i));
+        return malformed_at("a vertex is an array of three numbers", pointer + pointer_token(i));
       }
       std::array<GridNumber, 3> position;
       bool is_rounded = false;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         auto exact = exact_member(vertex[axis]);
         if (!exact) {
-          return wrong(exact.error().message, pointer + pointer_token(i) + pointer_token(axis));
+          return malformed_at(exact.error().message,
+                              pointer + pointer_token(i) + pointer_token(axis));
         }
         position[axis] = exact->value;
         is_rounded = is_rounded || exact->is_rounded;
@@ -93,13 +90,13 @@ class TemplateReader {
     const std::string pointer = std::string(kTemplates) + pointer_token(number);
     GeometryRef ref{
         number, number, model_.boundary_begin.size() - 1, string_member(geometry, "type"), {}};
-    if (ref.type.empty()) return wrong("the template has no type", pointer);
+    if (ref.type.empty()) return malformed_at("the template has no type", pointer);
     if (const Json* lod = find_member(geometry, "lod"); lod != nullptr) {
       ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
     }
     const Json* boundaries = find_member(geometry, "boundaries");
     if (boundaries == nullptr || !boundaries->is_array()) {
-      return wrong("the template has no boundaries", pointer);
+      return malformed_at("the template has no boundaries", pointer);
     }
     if (auto status = append_tokens(*boundaries, pointer + "/boundaries"); !status) return status;
     model_.boundary_begin.push_back(model_.tokens.size());
@@ -131,7 +128,7 @@ class TemplateReader {
       } else {
         std::string path = pointer;
         for (const Level& level : open) path += pointer_token(level.next - 1);
-        return wrong("boundaries are nested arrays of vertex indices", std::move(path));
+        return malformed_at("boundaries are nested arrays of vertex indices", std::move(path));
       }
     }
     return Done{};

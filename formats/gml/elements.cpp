@@ -75,6 +75,10 @@ std::optional<GmlKind> geometry_kind(std::string_view name) {
   return std::nullopt;
 }
 
+bool is_surface(GmlKind kind) {
+  return kind == GmlKind::polygon || kind == GmlKind::surfaces || kind == GmlKind::orientable;
+}
+
 std::optional<GmlRole> role_of(GmlKind kind, std::string_view property) {
   switch (kind) {
     case GmlKind::polygon:

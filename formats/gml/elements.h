@@ -18,6 +18,9 @@ bool is_gml_space(std::string_view space);
 /// The kind of a geometry element of GML; nothing for an element that is no geometry.
 std::optional<GmlKind> geometry_kind(std::string_view name);
 
+/// True for a geometry of polygons that bounds no solid by itself.
+bool is_surface(GmlKind kind);
+
 /// The role of a property of a geometry of `kind`; nothing when it has no such property.
 std::optional<GmlRole> role_of(GmlKind kind, std::string_view property);
 

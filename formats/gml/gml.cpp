@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/quantity.h"
+#include "formats/gml/elements.h"
 #include "formats/gml/model.h"
 #include "formats/gml/ring_texts.h"
 #include "formats/gml/shapes.h"
@@ -44,10 +45,6 @@ Result<geometry::Placement> read_placement(std::string_view text) {
     numbers.push_back(exact->value);
   }
   return placement_of_matrix(numbers, {});
-}
-
-bool is_surface(GmlKind kind) {
-  return kind == GmlKind::surfaces || kind == GmlKind::polygon || kind == GmlKind::orientable;
 }
 
 /// A geometry property that is a surface.

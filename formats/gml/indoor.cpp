@@ -22,25 +22,6 @@ bool is_core_space(std::string_view space) {
   return space.starts_with("http://www.opengis.net/indoorgml/1.") && space.ends_with("/core");
 }
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-
-std::string_view without_blanks(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t begin = text.find_first_not_of(" \t\r\n,", at);
-    if (begin == std::string_view::npos) break;
-    at = std::min(text.find_first_of(" \t\r\n,", begin), text.size());
-    words.push_back(text.substr(begin, at - begin));
-  }
-  return words;
-}
-
 // The indices of the elements of one kind by their ids. Counts elements with one id.
 class IdIndex {
  public:
@@ -156,8 +137,8 @@ void CellGraphReader::text(std::string_view text) {
 void CellGraphReader::end_position() {
   geometry::GraphState& state = graph_.states.back();
   if (state.position || !state.fault.empty()) return;
-  const auto words =
-      position_.size() <= kLongestPosition ? words_of(position_) : std::vector<std::string_view>();
+  const auto words = position_.size() <= kLongestPosition ? words_of(position_, " \t\r\n,")
+                                                          : std::vector<std::string_view>();
   if (words.size() != 3) {
     state.fault = "its position has not three numbers";
     return;

@@ -13,9 +13,6 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-// The most bytes of a gml:id, of which every solid and facet has a copy.
-constexpr std::size_t kLongestId = 1024;
-
 std::size_t count_words(std::string_view text) {
   std::size_t count = 0;
   bool is_in_word = false;
@@ -27,15 +24,12 @@ std::size_t count_words(std::string_view text) {
   return count;
 }
 
+// The most bytes of a gml:id, of which every solid and facet has a copy.
+constexpr std::size_t kLongestId = 1024;
+
 bool is_object(std::string_view name) {
   return !name.empty() && name.front() >= 'A' && name.front() <= 'Z' && name != "Geometry3D" &&
          name != "Geometry2D" && name != "ImplicitGeometry";
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
 }
 
 // Turns the elements of a document into a GmlModel. Keeps a frame for each open element.
@@ -180,7 +174,7 @@ class GmlBuilder : public XmlHandler {
 
   // The xlink:href of an element; "" without one.
   static std::string_view reference(const XmlElement& element) {
-    return trimmed(element.attribute(kXlinkSpace, "href").value_or(""));
+    return without_blanks(element.attribute(kXlinkSpace, "href").value_or(""));
   }
 
   Index system_of(std::string_view name) {
@@ -194,11 +188,12 @@ class GmlBuilder : public XmlHandler {
   }
 
   void read_context(const XmlElement& element, Frame& frame) {
-    if (const auto name = element.attribute("", "srsName"); name && !trimmed(*name).empty()) {
-      frame.system = system_of(trimmed(*name));
+    if (const auto name = element.attribute("", "srsName");
+        name && !without_blanks(*name).empty()) {
+      frame.system = system_of(without_blanks(*name));
     }
     if (const auto text = element.attribute("", "srsDimension")) {
-      const std::string_view digits = trimmed(*text);
+      const std::string_view digits = without_blanks(*text);
       const bool is_digit = digits.size() == 1 && digits[0] >= '0' && digits[0] <= '9';
       frame.dimension = is_digit && digits[0] != '0' ? digits[0] - '0' : -1;
     }
@@ -329,7 +324,7 @@ class GmlBuilder : public XmlHandler {
     node.system = frame.system;
     node.place = element.place;
     const std::string_view orientation =
-        trimmed(element.attribute("", "orientation").value_or("+"));
+        without_blanks(element.attribute("", "orientation").value_or("+"));
     node.is_reversed = kind == GmlKind::orientable && orientation == "-";
     model_.nodes.push_back(node);
     frames_.push_back(frame);

@@ -4,31 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/gml/elements.h"
 #include "formats/gml/gml.h"
 #include "formats/text/numbers.h"
 #include "geometry/crs/crs.h"
 
 namespace watertight::formats {
-namespace {
-
-constexpr std::string_view kBlanks = " \t\r\n";
-
-bool is_surface(GmlKind kind) {
-  return kind == GmlKind::polygon || kind == GmlKind::surfaces || kind == GmlKind::orientable;
-}
-
-// Takes the next word off the front of the text; "" at its end.
-std::string_view take_word(std::string_view& text) {
-  const std::size_t start = text.find_first_not_of(kBlanks);
-  if (start == std::string_view::npos) return {};
-  text.remove_prefix(start);
-  const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
-  text.remove_prefix(word.size());
-  return word;
-}
-
-}  // namespace
-
 GmlShapes::GmlShapes(const GmlModel& model, std::uint64_t byte_count, const Limits& limits)
     : model_(model),
       limits_(limits),

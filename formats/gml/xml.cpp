@@ -118,6 +118,27 @@ Error syntax_error(XML_Parser parser) {
 
 }  // namespace
 
+std::string_view without_blanks(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(kXmlBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kXmlBlanks) + 1 - begin);
+}
+
+std::string_view take_word(std::string_view& text, std::string_view separators) {
+  text.remove_prefix(std::min(text.find_first_not_of(separators), text.size()));
+  const std::string_view word = text.substr(0, text.find_first_of(separators));
+  text.remove_prefix(word.size());
+  return word;
+}
+
+std::vector<std::string_view> words_of(std::string_view text, std::string_view separators) {
+  std::vector<std::string_view> words;
+  for (auto word = take_word(text, separators); !word.empty(); word = take_word(text, separators)) {
+    words.push_back(word);
+  }
+  return words;
+}
+
 Error error_at(XmlPlace place, ErrorCode code, std::string_view message) {
   std::string text = "line ";
   text.append(std::to_string(place.line)).append(": ").append(message);

@@ -9,12 +9,26 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/bytes.h"
 #include "base/limits.h"
 #include "base/result.h"
 
 namespace watertight::formats {
+
+/// The white space of XML (XML 1.0, section 2.3).
+inline constexpr std::string_view kXmlBlanks = " \t\r\n";
+
+/// The text without blanks at both ends.
+std::string_view without_blanks(std::string_view text);
+
+/// Takes the next word off the front of the text; "" at its end.
+std::string_view take_word(std::string_view& text, std::string_view separators = kXmlBlanks);
+
+/// The words of the text.
+std::vector<std::string_view> words_of(std::string_view text,
+                                       std::string_view separators = kXmlBlanks);
 
 /// The place where an element starts.
 struct XmlPlace {

@@ -12,19 +12,21 @@
 namespace watertight::formats {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+bool is_blank_in_line(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
 
 }  // namespace
 
 void words_of(std::string_view line, std::vector<std::string_view>& words) {
   words.clear();
   for (std::size_t at = 0; at < line.size();) {
-    if (is_blank(line[at])) {
+    if (is_blank_in_line(line[at])) {
       ++at;
       continue;
     }
     std::size_t end = at;
-    while (end < line.size() && !is_blank(line[end])) ++end;
+    while (end < line.size() && !is_blank_in_line(line[end])) ++end;
     words.push_back(line.substr(at, end - at));
     at = end;
   }

@@ -85,8 +85,8 @@ struct DirectionBounds {
 };
 
 double squared_distance(const Vector3& a, const Vector3& b) {
-  const Vector3 d{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  return dot(d, d);
+  const Vector3 way{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  return dot(way, way);
 }
 
 bool DirectionBounds::include(std::span<const Vector3> corners) {

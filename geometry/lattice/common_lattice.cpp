@@ -28,7 +28,7 @@ std::optional<std::int64_t> mantissa_at(const GridNumber& number, std::int32_t e
   return mantissa;
 }
 
-GridNumber normalized(std::int64_t mantissa, std::int32_t exponent, std::int64_t radix) {
+GridNumber normal_form(std::int64_t mantissa, std::int32_t exponent, std::int64_t radix) {
   if (mantissa == 0) return {};
   while (mantissa % radix == 0) {
     mantissa /= radix;
@@ -37,7 +37,7 @@ GridNumber normalized(std::int64_t mantissa, std::int32_t exponent, std::int64_t
   return {mantissa, exponent};
 }
 
-struct AxisGrid {
+struct CommonAxis {
   GridNumber step;
   GridNumber origin;
 };
@@ -52,8 +52,8 @@ std::int32_t lowest_exponent(std::span<const Lattice> lattices, std::size_t axis
   return lowest;
 }
 
-std::optional<AxisGrid> common_axis(std::span<const Lattice> lattices, std::size_t axis,
-                                    std::int64_t radix) {
+std::optional<CommonAxis> common_axis(std::span<const Lattice> lattices, std::size_t axis,
+                                      std::int64_t radix) {
   const std::int32_t exponent = lowest_exponent(lattices, axis);
   std::int64_t step = 0;
   std::optional<std::int64_t> origin;
@@ -70,7 +70,7 @@ std::optional<AxisGrid> common_axis(std::span<const Lattice> lattices, std::size
     if (distance > std::numeric_limits<std::int64_t>::max()) return std::nullopt;
     step = std::gcd(std::gcd(step, *own), static_cast<std::int64_t>(distance));
   }
-  return AxisGrid{normalized(step, exponent, radix), normalized(*origin, exponent, radix)};
+  return CommonAxis{normal_form(step, exponent, radix), normal_form(*origin, exponent, radix)};
 }
 
 }  // namespace

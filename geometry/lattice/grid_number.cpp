@@ -227,4 +227,10 @@ GridNumber shortest_decimal(double value) { return shortest_of(value); }
 
 GridNumber shortest_decimal(float value) { return shortest_of(value); }
 
+GridNumber binary_number(double value) {
+  int exponent = 0;
+  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+  return normalized({mantissa, exponent - 53}, 2).value_or(GridNumber{});
+}
+
 }  // namespace watertight::geometry

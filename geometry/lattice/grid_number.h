@@ -39,6 +39,9 @@ std::optional<WideNumber> wide_sum(WideNumber a, WideNumber b, std::int32_t radi
 /// The normalized grid number, or nothing if its mantissa does not fit 64 bits.
 std::optional<GridNumber> normalized(WideNumber number, std::int32_t radix);
 
+/// A finite value as mantissa * 2^exponent with an odd mantissa; zero is {0, 0}.
+GridNumber binary_number(double value);
+
 /// The world coordinate at which a grid starts on one axis.
 struct GridOrigin {
   GridNumber number;

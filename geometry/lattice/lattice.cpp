@@ -254,20 +254,6 @@ std::optional<Axes> axes_of(std::span<const std::array<GridNumber, 3>> points, s
   return axes;
 }
 
-/// The value as mantissa * 2^exponent with an odd mantissa; zero is {0, 0}.
-GridNumber binary_number(double value) {
-  if (value == 0) return {};
-  int exponent = 0;
-  const double fraction = std::frexp(value, &exponent);
-  auto mantissa = static_cast<std::int64_t>(std::ldexp(fraction, 53));
-  exponent -= 53;
-  while (mantissa % 2 == 0) {
-    mantissa /= 2;
-    ++exponent;
-  }
-  return {mantissa, exponent};
-}
-
 GridNumber renormalized(const GridNumber& number) {
   return normalized({number.mantissa, number.exponent}, kDecimal).value_or(GridNumber{});
 }

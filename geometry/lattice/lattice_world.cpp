@@ -69,10 +69,11 @@ BigDecimal place_of(const GridNumber& scale, std::int64_t integer, const GridNum
 
 /// The nearest decimal of 18 digits; halves are rounded away from zero.
 GridNumber rounded_to_digits(const BigDecimal& exact) {
-  constexpr std::size_t kDigits = 18;
+  constexpr std::size_t kRoundedDigits = 18;
   const BigInteger magnitude = abs(exact.mantissa);
   const std::size_t digits = magnitude.get_str().size();
-  const auto dropped = static_cast<std::int64_t>(digits > kDigits ? digits - kDigits : 0);
+  const auto dropped =
+      static_cast<std::int64_t>(digits > kRoundedDigits ? digits - kRoundedDigits : 0);
   const BigInteger unit = big_power(10, dropped);
   const BigInteger kept = (2 * magnitude + unit) / (2 * unit);
   const WideNumber number{exact.mantissa < 0 ? -Wide{kept.get_si()} : Wide{kept.get_si()},

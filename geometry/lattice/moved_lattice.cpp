@@ -11,14 +11,6 @@ namespace {
 
 constexpr std::int64_t kMostMantissa = 1'000'000'000'000'000'000;  // 18 digits
 
-/// A finite double as mantissa * 2^exponent.
-GridNumber binary_number(double value) {
-  int exponent = 0;
-  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
-  const auto number = normalized({mantissa, exponent - 53}, 2);
-  return number.value_or(GridNumber{});
-}
-
 }  // namespace
 
 Result<Lattice> moved_lattice(const Lattice& lattice, const std::array<double, 3>& way) {

@@ -14,7 +14,7 @@ namespace {
 /// Coordinates on the grid differ by less than 2^kSpanBits: of the 53 bits of a double, one is left
 /// for the rounding of the grid's origin.
 constexpr unsigned kSpanBits = 52;
-constexpr double kCoordinateEnd = 9007199254740992.0;  // 2^53
+constexpr double kSharedCoordinateEnd = 9007199254740992.0;  // 2^53
 constexpr std::size_t kOriginDigits = 18;
 
 /// The number integer * 2^exponent with an odd integer; zero is {0, 0}.
@@ -172,7 +172,8 @@ bool have_one_placement(const std::vector<StandingSolid>& solids) {
 }
 
 std::optional<Point> inside_doubles(const std::array<double, 3>& p) {
-  if (std::any_of(p.begin(), p.end(), [](double c) { return !(std::abs(c) < kCoordinateEnd); })) {
+  if (std::any_of(p.begin(), p.end(),
+                  [](double c) { return !(std::abs(c) < kSharedCoordinateEnd); })) {
     return std::nullopt;
   }
   return Point{p[0], p[1], p[2]};
@@ -252,7 +253,8 @@ bool SharedGrid::put_in_world() {
       const auto at = static_cast<int>(axis);
       boxes_[i].min[at] = grid.coordinate(ranges[i].low, axes[i].exponent);
       boxes_[i].max[at] = grid.coordinate(ranges[i].high, axes[i].exponent);
-      if (!(boxes_[i].max[at] < kCoordinateEnd) || !(boxes_[i].min[at] > -kCoordinateEnd)) {
+      if (!(boxes_[i].max[at] < kSharedCoordinateEnd) ||
+          !(boxes_[i].min[at] > -kSharedCoordinateEnd)) {
         return false;
       }
       rounded_axes_[i][axis] = axes[i].exponent < grid.exponent;

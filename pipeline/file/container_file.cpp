@@ -18,10 +18,6 @@ constexpr std::uint64_t kHeadBytes = sizeof(kContainerMagic) + 1;
 constexpr std::size_t kBlockRequests = 4;
 constexpr std::size_t kPageRequests = 1;
 
-Error malformed(std::string message, std::uint64_t offset) {
-  return {ErrorCode::malformed, std::move(message), offset, {}};
-}
-
 /// The error of a file that has bytes after its last commit.
 Error torn_file(const Error& reason, std::uint64_t committed, std::uint64_t size) {
   if (committed == 0) return reason;
@@ -87,7 +83,7 @@ Status ContainerFile::read_all(TornTail torn) {
   }
   const bool is_known = committed_ > 0 || ranges_.bytes_read() >= size;
   if (!is_known && torn == TornTail::refuse) {
-    return malformed("no commit ends this Watertight file: it is torn or damaged", size);
+    return malformed_file("no commit ends this Watertight file: it is torn or damaged", size);
   }
   const auto bytes = ranges_.keep({0, size});
   if (!bytes) return bytes.error();
@@ -132,14 +128,14 @@ Status ContainerFile::check_index(const std::vector<Record>& records) {
   std::uint64_t number = 0;
   for (const Record& record : records) {
     if (record.kind != RecordKind::block) continue;
-    if (number == blocks_) return malformed("a block that no index has", record.extent.offset);
+    if (number == blocks_) return malformed_file("a block that no index has", record.extent.offset);
     const auto found = entry(number++);
     if (!found) return found.error();
     if (found->extent == record.extent) continue;
-    return malformed("the index of blocks names another place", record.extent.offset);
+    return malformed_file("the index of blocks names another place", record.extent.offset);
   }
   if (number == blocks_) return Done{};
-  return malformed("the index names a block that is not there", commit_offset_);
+  return malformed_file("the index names a block that is not there", commit_offset_);
 }
 
 /// The bytes of an extent, which the budget counts.
@@ -158,7 +154,7 @@ Result<Record> ContainerFile::record(const Extent& extent, RecordKind kind) {
   auto found = read_record(*bytes, extent.offset);
   if (!found) return found;
   if (found->kind == kind && found->extent == extent) return found;
-  return malformed("a record of another kind or length than its file says", extent.offset);
+  return malformed_file("a record of another kind or length than its file says", extent.offset);
 }
 
 Status ContainerFile::read_documents() {
@@ -169,7 +165,7 @@ Status ContainerFile::read_documents() {
     if (!deleted) return deleted.error();
     deleted_.insert(deleted->begin(), deleted->end());
     if (!deleted_.empty() && deleted_.rbegin()->block >= blocks_) {
-      return malformed("a deleted feature of a block that is not there", found->extent.offset);
+      return malformed_file("a deleted feature of a block that is not there", found->extent.offset);
     }
   }
   if (commit_.documents.size > 0) {
@@ -178,7 +174,7 @@ Status ContainerFile::read_documents() {
     auto block = read_block(found->payload, {}, budget_);
     if (!block) return inside(std::move(block).error(), commit_.documents.offset);
     if (!block->features.empty()) {
-      return malformed("features in the record of documents", commit_.documents.offset);
+      return malformed_file("features in the record of documents", commit_.documents.offset);
     }
     documents_ = std::move(block->documents);
     return Done{};
@@ -231,7 +227,8 @@ Status ContainerFile::check_block(std::uint64_t number, const BlockEntry& entry,
                                   const ReadBlock& block) const {
   if (!has_index()) return Done{};
   if (entry.features != block.features.size()) {
-    return malformed("the index of blocks states another number of features", entry.extent.offset);
+    return malformed_file("the index of blocks states another number of features",
+                          entry.extent.offset);
   }
   for (const ReadFeature& feature : block.features) {
     // An index that was made anew has no boxes of deleted features.
@@ -239,8 +236,8 @@ Status ContainerFile::check_block(std::uint64_t number, const BlockEntry& entry,
     const auto box = box_of(feature.encoded, feature.solids, limits_);
     if (!box) return box.error();
     if (*box && !(entry.box && entry.box->contains(flat(**box)))) {
-      return malformed("a feature is outside of the box that the index states",
-                       entry.extent.offset);
+      return malformed_file("a feature is outside of the box that the index states",
+                            entry.extent.offset);
     }
   }
   std::optional<std::set<std::uint64_t>> hashes;
@@ -255,7 +252,7 @@ Status ContainerFile::check_block(std::uint64_t number, const BlockEntry& entry,
       }
     }
     if (!hashes->contains(asked.hash)) {
-      return malformed("the index of ids names a block without the id", asked.offset);
+      return malformed_file("the index of ids names a block without the id", asked.offset);
     }
   }
   return Done{};
@@ -301,7 +298,7 @@ Result<ReadBlock> ContainerFile::block(std::uint64_t number) {
   }
   for (ReadFeature& feature : block.features) {
     if (feature.document >= documents_.size()) {
-      return malformed("a feature of a document that is not there", place->extent.offset);
+      return malformed_file("a feature of a document that is not there", place->extent.offset);
     }
     feature.encoded.format = documents_[feature.document].format;
     feature.encoded.header = documents_[feature.document].header;

@@ -16,10 +16,6 @@ constexpr std::size_t kChecksumBytes = 4;
 constexpr std::size_t kVarintBytes = 10;  // the most bytes of a varint
 constexpr std::uint64_t kKinds = 4;
 
-Error malformed(std::string message, std::uint64_t offset) {
-  return {ErrorCode::malformed, std::move(message), offset, {}};
-}
-
 /// The checksum of a record starts with the head of the file, so that no version takes a record of
 /// another for its own.
 std::uint32_t checksum_of(ByteView record) {
@@ -38,6 +34,10 @@ Bytes reversed_varint(std::uint64_t value) {
 
 }  // namespace
 
+Error malformed_file(std::string message, std::uint64_t offset) {
+  return {ErrorCode::malformed, std::move(message), offset, {}};
+}
+
 Bytes file_head() {
   Bytes head(std::begin(kContainerMagic), std::end(kContainerMagic));
   head.push_back(kContainerVersion);
@@ -50,8 +50,8 @@ bool is_container(ByteView bytes) {
 }
 
 Status check_head(ByteView bytes) {
-  if (!is_container(bytes)) return malformed("not a Watertight file", 0);
-  if (bytes.size() == kMagicBytes) return malformed("truncated Watertight file", bytes.size());
+  if (!is_container(bytes)) return malformed_file("not a Watertight file", 0);
+  if (bytes.size() == kMagicBytes) return malformed_file("truncated Watertight file", bytes.size());
   const std::uint8_t version = bytes[kMagicBytes];
   if (version == kContainerVersion) return Done{};
   return Error{ErrorCode::unsupported,
@@ -77,20 +77,20 @@ Result<Record> read_record(ByteView bytes, std::uint64_t offset) {
   Record record;
   record.kind = static_cast<RecordKind>(head % kKinds);
   if (reader.failed() || size > reader.remaining() || reader.remaining() - size < kChecksumBytes) {
-    return malformed("truncated record of a Watertight file", offset);
+    return malformed_file("truncated record of a Watertight file", offset);
   }
   record.payload = reader.take(static_cast<std::size_t>(size));
   const std::size_t checked = reader.position();
   if (reader.u32() != checksum_of(bytes.first(checked))) {
-    return malformed("damaged record of a Watertight file: its checksum differs", offset);
+    return malformed_file("damaged record of a Watertight file: its checksum differs", offset);
   }
   record.extent = {offset, reader.position()};
   if (record.kind != RecordKind::commit) return record;
   const Bytes mark = reversed_varint(record.extent.size);
   const ByteView found = reader.take(std::min(mark.size(), reader.remaining()));
   if (!std::equal(mark.begin(), mark.end(), found.begin(), found.end())) {
-    return malformed("damaged commit of a Watertight file: its length differs",
-                     offset + record.extent.size);
+    return malformed_file("damaged commit of a Watertight file: its length differs",
+                          offset + record.extent.size);
   }
   record.extent.size += mark.size();
   return record;
@@ -125,7 +125,7 @@ Walk walk_records(ByteView file) {
     open.clear();
   }
   if (walk.committed < file.size() || walk.committed == 0) {
-    walk.torn = malformed("truncated Watertight file: no commit ends it", file.size());
+    walk.torn = malformed_file("truncated Watertight file: no commit ends it", file.size());
   }
   return walk;
 }

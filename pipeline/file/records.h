@@ -6,9 +6,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/bytes.h"
+#include "base/result.h"
 
 namespace watertight::pipeline {
 
@@ -19,6 +21,9 @@ inline constexpr std::uint8_t kContainerMagic[8] = {0x89, 'W', 'T', 'F', '\r', '
 inline constexpr std::uint8_t kContainerVersion = 3;
 
 enum class RecordKind : std::uint8_t { block, documents, index, commit };
+
+/// The error malformed at a byte of a file.
+Error malformed_file(std::string message, std::uint64_t offset);
 
 /// A piece of a file.
 struct Extent {

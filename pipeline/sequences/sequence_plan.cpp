@@ -9,7 +9,7 @@
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::uint64_t kBatch = 100;
+constexpr std::uint64_t kPlanBatch = 100;
 
 Error about(const std::string& id, Error error) {
   error.message.insert(0, "feature '" + id + "': ");
@@ -32,7 +32,7 @@ Status add_made_headers(SolidStore& store, const std::string& collection,
                         std::vector<std::string>& headers, const CancelPoll& is_cancelled) {
   std::string after;
   do {
-    auto batch = store.walk(collection, kBatch, after);
+    auto batch = store.walk(collection, kPlanBatch, after);
     if (!batch) return std::move(batch).error();
     for (StoredFeature& feature : batch->features) {
       if (is_cancelled && is_cancelled()) {

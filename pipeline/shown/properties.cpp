@@ -11,8 +11,8 @@
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::uint64_t kBatch = 200;
-constexpr std::size_t kMostNames = 100'000;
+constexpr std::uint64_t kPropertyBatch = 200;
+constexpr std::size_t kMostProperties = 100'000;
 
 }  // namespace
 
@@ -51,7 +51,7 @@ Result<std::vector<PropertyKinds>> found_properties(SolidStore& store,
   std::unordered_map<std::string, std::size_t> places;
   std::string after;
   do {
-    auto batch = store.walk(collection, kBatch, after);
+    auto batch = store.walk(collection, kPropertyBatch, after);
     if (!batch) return std::move(batch).error();
     for (StoredFeature& feature : batch->features) {
       if (is_cancelled && is_cancelled()) return Error{ErrorCode::cancelled, "stopped"};
@@ -63,10 +63,10 @@ Result<std::vector<PropertyKinds>> found_properties(SolidStore& store,
         if (is_new) found.emplace_back(name, ValueKinds{});
         found[place->second].second.note(value);
       }
-      if (found.size() > kMostNames) {
-        return Error{
-            ErrorCode::limit_exceeded,
-            "the features have more than " + std::to_string(kMostNames) + " different attributes"};
+      if (found.size() > kMostProperties) {
+        return Error{ErrorCode::limit_exceeded, "the features have more than " +
+                                                    std::to_string(kMostProperties) +
+                                                    " different attributes"};
       }
     }
     after = std::move(batch->next);

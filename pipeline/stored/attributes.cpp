@@ -10,7 +10,7 @@
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::uint64_t kBatch = 200;
+constexpr std::uint64_t kAttributeBatch = 200;
 constexpr std::size_t kMostNames = 100'000;
 
 /// Whether a text is a number as JSON writes it.
@@ -57,7 +57,7 @@ Result<std::map<std::string, AttributeCount>> found_attributes(SolidStore& store
   std::map<std::string, AttributeCount> counts;
   for (std::string after;;) {
     if (is_cancelled && is_cancelled()) return Error{ErrorCode::cancelled, "stopped"};
-    auto batch = store.walk(collection, kBatch, after);
+    auto batch = store.walk(collection, kAttributeBatch, after);
     if (!batch) return std::move(batch).error();
     for (StoredFeature& feature : batch->features) {
       const auto encoded = unpack(std::move(feature), {}, Reports::none);

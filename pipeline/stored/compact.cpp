@@ -12,7 +12,7 @@
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::uint64_t kBatch = 200;
+constexpr std::uint64_t kCompactBatch = 200;
 
 bool is_same(const packing::DictionaryPointer& a, const packing::DictionaryPointer& b) {
   return a == b || (a && b && a->content() == b->content());
@@ -55,7 +55,7 @@ Result<CompactCounts> compact(SolidStore& store, const std::string& collection,
     if (is_cancelled && is_cancelled()) {
       return Error{ErrorCode::cancelled, "stopped; what was packed stays packed"};
     }
-    auto batch = store.walk(collection, kBatch, after);
+    auto batch = store.walk(collection, kCompactBatch, after);
     if (!batch) return std::move(batch).error();
     std::vector<StoredFeature> repacked;
     for (StoredFeature& feature : batch->features) {

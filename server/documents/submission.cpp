@@ -12,10 +12,8 @@
 namespace watertight::server {
 namespace {
 
-using Json = nlohmann::json;
-
 /// Finds the top-level "type" of a JSON text, and stops as soon as it has seen it.
-class TypeFinder : public nlohmann::json_sax<Json> {
+class TypeFinder : public nlohmann::json_sax<nlohmann::json> {
  public:
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -137,7 +135,7 @@ bool is_sequence(std::string_view body) {
   const std::string_view line = first_line(body);
   return line.size() < body.size() && top_level_type(line) == "CityJSON" &&
          body.find_first_not_of(" \t\r\n", line.size()) != std::string_view::npos &&
-         Json::accept(line);
+         nlohmann::json::accept(line);
 }
 
 /// The format of a body that is said to have `stated`: JSON can be a sequence, and a sequence a
@@ -222,7 +220,7 @@ Result<formats::FeatureReader> open_body(const RoutedRequest& request, Format fo
 
 std::string top_level_type(std::string_view json) {
   TypeFinder finder;
-  Json::sax_parse(json.begin(), json.end(), &finder);
+  nlohmann::json::sax_parse(json.begin(), json.end(), &finder);
   return finder.take();
 }
 

@@ -11,7 +11,7 @@ namespace watertight::server {
 namespace {
 
 /// A number of bytes. Nothing for other text; the largest number for one that is larger.
-std::optional<std::uint64_t> bytes_of(std::string_view text) {
+std::optional<std::uint64_t> byte_position(std::string_view text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size() || text.empty()) return std::nullopt;
@@ -30,8 +30,8 @@ WantedRange part(std::uint64_t first, std::uint64_t last) {
 WantedRange range_of(std::string_view text, std::uint64_t size) {
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos) return {};
-  const auto first = bytes_of(text.substr(0, dash));
-  const auto last = bytes_of(text.substr(dash + 1));
+  const auto first = byte_position(text.substr(0, dash));
+  const auto last = byte_position(text.substr(dash + 1));
   if (dash == 0) {  // the last bytes
     if (!last) return {};
     if (*last == 0 || size == 0) return unsatisfiable();

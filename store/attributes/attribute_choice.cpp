@@ -12,7 +12,7 @@
 namespace watertight::store {
 namespace {
 
-constexpr std::int64_t kBatch = 200;
+constexpr std::int64_t kChoiceBatch = 200;
 constexpr std::int64_t kBatchBytes = 16 << 20;  // of packed texts and solids
 
 // An attribute that is not complete has less than the whole share.
@@ -91,9 +91,9 @@ struct NextFeatures {
 Result<NextFeatures> read_next(DatabaseSession& connection, const std::string& collection,
                                const std::string& after) {
   const Result<Rows> rows =
-      connection.ask(kNext, Parameters().text(collection).text(after).int8(kBatch));
+      connection.ask(kNext, Parameters().text(collection).text(after).int8(kChoiceBatch));
   if (!rows) return rows.error();
-  NextFeatures next{{}, after, rows->size() < kBatch};
+  NextFeatures next{{}, after, rows->size() < kChoiceBatch};
   std::int64_t bytes = 0;
   for (int row = 0; row < rows->size(); ++row) {
     bytes += rows->int8(row, 2);

@@ -120,9 +120,9 @@ class Writer {
         " && watertight.index_box(";
     text.append(at[0]).append(", ").append(at[1]).append(", ").append(at[3]).append(", ");
     text.append(at[4]).append(")");
-    constexpr std::array kColumns = {" AND max_x >= ", " AND max_y >= ", " AND max_z >= ",
-                                     " AND min_x <= ", " AND min_y <= ", " AND min_z <= "};
-    for (std::size_t i = 0; i < at.size(); ++i) text.append(kColumns[i]).append(at[i]);
+    constexpr std::array kComparisons = {" AND max_x >= ", " AND max_y >= ", " AND max_z >= ",
+                                         " AND min_x <= ", " AND min_y <= ", " AND min_z <= "};
+    for (std::size_t i = 0; i < at.size(); ++i) text.append(kComparisons[i]).append(at[i]);
     return text.append(")");
   }
 

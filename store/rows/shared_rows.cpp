@@ -57,7 +57,7 @@ Status SharedRows::read_kinds(DatabaseSession& connection, std::span<const std::
   const std::lock_guard lock(mutex_);
   for (int row = 0; row < rows->size(); ++row) {
     const auto [header, is_new] = headers_.emplace(std::string(rows->text(row, 3)));
-    const Kind kind{std::string(rows->text(row, 1)), std::string(rows->text(row, 2)), *header};
+    const RowKind kind{std::string(rows->text(row, 1)), std::string(rows->text(row, 2)), *header};
     found.kinds[rows->int8(row, 0)] = kind;
     make_room(kRowBytes + (is_new ? kind.header.str().size() : 0));
     kinds_[rows->int8(row, 0)] = kind;

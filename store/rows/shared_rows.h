@@ -23,7 +23,7 @@
 namespace watertight::store {
 
 /// What the features of one kind have in common.
-struct Kind {
+struct RowKind {
   std::string type;
   std::string format;
   SharedText header;
@@ -34,7 +34,7 @@ struct Kind {
 class SharedRows {
  public:
   struct Found {
-    std::map<std::int64_t, Kind> kinds;
+    std::map<std::int64_t, RowKind> kinds;
     std::map<std::int64_t, packing::DictionaryPointer> dictionaries;  // null for key 0
   };
   /// The kinds and dictionaries of these keys; asks the database for those that are not held. A key
@@ -68,7 +68,7 @@ class SharedRows {
                            Found& found);
 
   mutable std::mutex mutex_;
-  std::map<std::int64_t, Kind> kinds_;
+  std::map<std::int64_t, RowKind> kinds_;
   std::set<SharedText> headers_;  // one copy of each
   std::map<std::int64_t, packing::DictionaryPointer> dictionaries_;
   std::map<std::string, std::pair<packing::DictionaryPointer, Clock::time_point>> newest_;

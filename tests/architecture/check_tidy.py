@@ -9,14 +9,16 @@ Left out, because each would cost clang-tidy most of a minute for headers that a
     seen from other units; the compiler's -Werror list covers the rest);
   - units that include Boost (Beast and Asio coroutines, which clang 14 cannot parse with this
     standard library).
-A unit that passed is not run again until it, a header of ours that it includes, the list, or its
-compile command changes (stamps in BUILD_ROOT/tidy).
+Up to BATCH units of a folder are read as one, because headers take most of the time. A batch that
+passed is not run again until a unit, a header of ours, the list, or the compiler's options change
+(stamps in BUILD_ROOT/tidy).
 """
 import concurrent.futures
 import hashlib
 import json
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -24,6 +26,7 @@ import sys
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
 FOLDERS = ("base", "workers", "geometry", "tessellate", "delaunay", "validate", "codec",
            "columns", "archives", "formats", "packing", "store", "cql2", "pipeline", "geopackage", "files", "report", "server", "cli", "sql")
+BATCH = 12  # as CMAKE_UNITY_BUILD_BATCH_SIZE
 TOO_HEAVY = ("CGAL/", "boost/", "tetgen.h")
 
 
@@ -46,6 +49,19 @@ def closure(root, name, cache):
     return sorted(ours), foreign
 
 
+def options_of(entry, path):
+    """The compiler's options of a unit, without the names of its input and output."""
+    words, options, skip = shlex.split(entry["command"]), [], False
+    for word in words[1:]:
+        if skip:
+            skip = False
+        elif word in ("-o", "-c", "-MF", "-MT"):
+            skip = word != "-c"
+        elif word != "-MD" and not word.endswith(("/c++", "/g++", "/cc")) and word != str(path):
+            options.append(word)
+    return tuple(options)
+
+
 def main(arguments):
     root, build = pathlib.Path(arguments[0]).resolve(), pathlib.Path(arguments[1]).resolve()
     only = set(arguments[2:])
@@ -57,7 +73,7 @@ def main(arguments):
     stamps = build / "tidy"
     stamps.mkdir(exist_ok=True)
     settings = (root / ".clang-tidy").read_bytes()
-    cache, jobs, heavy, unchanged, seen = {}, [], [], 0, set()
+    cache, heavy, seen, units = {}, [], set(), {}
     for entry in commands:
         path = pathlib.Path(entry["directory"], entry["file"]).resolve()
         if root not in path.parents:
@@ -72,33 +88,42 @@ def main(arguments):
         if any(header.startswith(TOO_HEAVY) for header in foreign):
             heavy.append(name)
             continue
-        digest = hashlib.sha256(settings + entry["command"].encode())
-        for part in ours:
-            digest.update(part.encode() + b"\0" + (root / part).read_bytes())
-        stamp = stamps / (hashlib.sha256(name.encode()).hexdigest()[:16] + ".ok")
-        if stamp.is_file() and stamp.read_text() == digest.hexdigest():
-            unchanged += 1
-            continue
-        jobs.append((name, stamp, digest.hexdigest()))
+        units.setdefault((name.split("/")[0], options_of(entry, path)), []).append((name, ours))
+
+    batches, unchanged = [], 0
+    for (folder, options), files in units.items():
+        for start in range(0, len(files), BATCH):
+            names = [name for name, _ in files[start:start + BATCH]]
+            digest = hashlib.sha256(settings + "\0".join(options).encode())
+            for part in sorted(set().union(*(ours for _, ours in files[start:start + BATCH]))):
+                digest.update(part.encode() + b"\0" + (root / part).read_bytes())
+            batch = stamps / (folder + "-" + hashlib.sha256(" ".join(names).encode()).hexdigest()[:16] + ".cpp")
+            stamp = batch.with_suffix(".ok")
+            if stamp.is_file() and stamp.read_text() == digest.hexdigest():
+                unchanged += len(names)
+                continue
+            batch.write_text("".join(f'#include "{root / name}"\n' for name in names))
+            batches.append((batch, names, options, stamp, digest.hexdigest()))
 
     def run(job):
-        name, stamp, digest = job
+        batch, names, options, stamp, digest = job
         done = subprocess.run(
-            [program, "--quiet", f"-p={build}", "--extra-arg=-Wno-unknown-warning-option",
-             "--extra-arg=-Wno-error", str(root / name)],
+            [program, "--quiet", f"--config-file={root / '.clang-tidy'}", str(batch), "--", *options,
+             "-Wno-unknown-warning-option", "-Wno-error"],
             capture_output=True, text=True, check=False)
         if done.returncode == 0:
             stamp.write_text(digest)
-        return name, done
+        return names, done
 
     failures = 0
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for name, done in pool.map(run, jobs):
+        for names, done in pool.map(run, batches):
             if done.returncode != 0:
                 failures += 1
-                print(f"{name}:\n{done.stdout}\n{done.stderr[-2000:]}", flush=True)
-    print(f"clang-tidy: {len(jobs)} units run, {failures} with findings, {unchanged} unchanged since they "
-          f"passed, {len(heavy)} left out (CGAL or Boost)")
+                print(f"{' '.join(names)}:\n{done.stdout}\n{done.stderr[-2000:]}", flush=True)
+    count = sum(len(names) for _, names, _, _, _ in batches)
+    print(f"clang-tidy: {count} units run in {len(batches)} batches, {failures} batches with findings, {unchanged} "
+          f"units unchanged since they passed, {len(heavy)} left out (CGAL or Boost)")
     return 1 if failures else 0
 
 

@@ -18,7 +18,7 @@ using test::permutation;
   std::abort();
 }
 
-Index add_vertex(SolidArrays& arrays, double x, double y, double z) {
+Index add_corner(SolidArrays& arrays, double x, double y, double z) {
   arrays.vertices.push_back({x, y, z});
   return static_cast<Index>(arrays.vertices.size() - 1);
 }
@@ -37,7 +37,7 @@ std::vector<Index> reversed(std::vector<Index> ring) {
 std::array<Index, 8> add_corners(SolidArrays& arrays, Point min, Point max) {
   std::array<Index, 8> corner{};
   for (std::size_t i = 0; i < 8; ++i) {
-    corner[i] = add_vertex(arrays, (i & 1U) != 0 ? max.x : min.x, (i & 2U) != 0 ? max.y : min.y,
+    corner[i] = add_corner(arrays, (i & 1U) != 0 ? max.x : min.x, (i & 2U) != 0 ? max.y : min.y,
                            (i & 4U) != 0 ? max.z : min.z);
   }
   return corner;
@@ -67,8 +67,8 @@ void add_walls(SolidArrays& arrays, const std::vector<Index>& low, const std::ve
 }
 
 std::vector<Index> add_square(SolidArrays& arrays, double x, double y, double size, double z) {
-  return {add_vertex(arrays, x, y, z), add_vertex(arrays, x + size, y, z),
-          add_vertex(arrays, x + size, y + size, z), add_vertex(arrays, x, y + size, z)};
+  return {add_corner(arrays, x, y, z), add_corner(arrays, x + size, y, z),
+          add_corner(arrays, x + size, y + size, z), add_corner(arrays, x, y + size, z)};
 }
 
 /// A closed surface over a grid of heights: triangles above, one polygon below, walls around.
@@ -80,7 +80,7 @@ SolidArrays terrain(Random& random, Index size, double scale) {
       const auto height = static_cast<double>(random.below(static_cast<std::uint64_t>(z_range)));
       const auto dx = static_cast<double>(random.below(60));
       const bool is_rim = i == 0 || j == 0 || i == size || j == size;
-      add_vertex(arrays, (i * 100 + (is_rim ? 0 : dx)) * scale, j * 100 * scale,
+      add_corner(arrays, (i * 100 + (is_rim ? 0 : dx)) * scale, j * 100 * scale,
                  (500 + height) * scale);
     }
   }
@@ -99,7 +99,7 @@ SolidArrays terrain(Random& random, Index size, double scale) {
   std::vector<Index> foot;
   for (const Index vertex : rim) {
     const Point p = arrays.vertices[vertex];
-    foot.push_back(add_vertex(arrays, p.x, p.y, 0));
+    foot.push_back(add_corner(arrays, p.x, p.y, 0));
   }
   add_walls(arrays, foot, rim, Turn::outward);
   add_facet(arrays, {reversed(foot)});
@@ -203,10 +203,10 @@ OrientedBoundary block_with_touching_hole() {
   const auto high = add_square(arrays, 0, 0, 1000, 500);
   add_walls(arrays, low, high, Turn::outward);
   // The hole is a triangle with one corner at a corner of the block.
-  const std::vector<Index> hole_low{low[0], add_vertex(arrays, 600, 300, 0),
-                                    add_vertex(arrays, 300, 600, 0)};
-  const std::vector<Index> hole_high{high[0], add_vertex(arrays, 600, 300, 500),
-                                     add_vertex(arrays, 300, 600, 500)};
+  const std::vector<Index> hole_low{low[0], add_corner(arrays, 600, 300, 0),
+                                    add_corner(arrays, 300, 600, 0)};
+  const std::vector<Index> hole_high{high[0], add_corner(arrays, 600, 300, 500),
+                                     add_corner(arrays, 300, 600, 500)};
   add_walls(arrays, hole_low, hole_high, Turn::inward);
   add_facet(arrays, {reversed(low), hole_low});
   add_facet(arrays, {high, reversed(hole_high)});
@@ -244,7 +244,7 @@ OrientedBoundary torus(Index n, Index m) {
       // The division of integers rounds down to the grid, so every machine gets the same integers.
       const auto x = static_cast<double>(static_cast<std::int64_t>(radius) * around[0] / 1000);
       const auto y = static_cast<double>(static_cast<std::int64_t>(radius) * around[1] / 1000);
-      add_vertex(arrays, x + 5000, y + 5000, across[1] + 1000.0);
+      add_corner(arrays, x + 5000, y + 5000, across[1] + 1000.0);
     }
   }
   const auto at = [&](Index i, Index j) { return (i % n) * m + j % m; };
@@ -263,7 +263,7 @@ OrientedBoundary grid_cube(Index n) {
   std::vector<Index> number((n + 1) * (n + 1) * (n + 1), kNone);
   const auto at = [&](Index x, Index y, Index z) {
     Index& vertex = number[(x * (n + 1) + y) * (n + 1) + z];
-    if (vertex == kNone) vertex = add_vertex(arrays, x, y, z);
+    if (vertex == kNone) vertex = add_corner(arrays, x, y, z);
     return vertex;
   };
   for (int axis = 0; axis < 3; ++axis) {
@@ -332,8 +332,8 @@ OrientedBoundary random_prism(Random& random, Index sides) {
   const double height = 2500 + static_cast<double>(random.below(9000));
   std::vector<Index> low;
   std::vector<Index> high;
-  for (const Point& p : outline) low.push_back(add_vertex(arrays, p.x, p.y, 0));
-  for (const Point& p : outline) high.push_back(add_vertex(arrays, p.x, p.y, height));
+  for (const Point& p : outline) low.push_back(add_corner(arrays, p.x, p.y, 0));
+  for (const Point& p : outline) high.push_back(add_corner(arrays, p.x, p.y, height));
   add_walls(arrays, low, high, Turn::outward);
   add_facet(arrays, {reversed(low)});
   add_facet(arrays, {high});
@@ -359,10 +359,10 @@ OrientedBoundary saw(Index teeth, Back back) {
   for (Index k = 0; k <= 2 * teeth; ++k) {
     z += 20 + k * k % 7;
     if (!is_left && (k == 0 || k == 2 * teeth)) continue;
-    base.push_back(add_vertex(arrays, k % 2 == 0 ? 0 : 400, 0, z));
+    base.push_back(add_corner(arrays, k % 2 == 0 ? 0 : 400, 0, z));
   }
-  base.push_back(add_vertex(arrays, is_left ? -300 : 700, 0, 0));
-  const Index apex = is_left ? add_vertex(arrays, -500, 300, 0) : add_vertex(arrays, 200, -90, 50);
+  base.push_back(add_corner(arrays, is_left ? -300 : 700, 0, 0));
+  const Index apex = is_left ? add_corner(arrays, -500, 300, 0) : add_corner(arrays, 200, -90, 50);
   for (std::size_t i = 0; i < base.size(); ++i) {
     add_facet(arrays, {{base[(i + 1) % base.size()], base[i], apex}});
   }

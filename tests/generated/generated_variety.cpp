@@ -28,7 +28,7 @@ std::int64_t between(Random& random, std::int64_t low, std::int64_t high) {
   return low + static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(high - low + 1)));
 }
 
-Ring reversed(Ring ring) {
+Ring backward(Ring ring) {
   std::reverse(ring.begin(), ring.end());
   return ring;
 }
@@ -85,9 +85,9 @@ Shape row_of_houses(Random& random, Index size) {
   }
   Ring front = foot[0];
   front.insert(front.end(), skyline[0].rbegin(), skyline[0].rend());
-  Ring back = reversed(foot[1]);
+  Ring back = backward(foot[1]);
   back.insert(back.end(), skyline[1].begin(), skyline[1].end());
-  Ring bottom = reversed(foot[0]);
+  Ring bottom = backward(foot[0]);
   bottom.insert(bottom.end(), foot[1].begin(), foot[1].end());
   add_facet(arrays, {front});
   add_facet(arrays, {back});
@@ -147,7 +147,7 @@ Shape voxels(Random& random, Index size) {
           p[v] += dv;
           ring.push_back(vertex(p));
         }
-        add_facet(arrays, {up == 1 ? ring : reversed(ring)});
+        add_facet(arrays, {up == 1 ? ring : backward(ring)});
       }
     }
   }
@@ -170,7 +170,7 @@ Shape plate(Random& random, Index size) {
   };
   const Ring low = square(0);
   const Ring high = square(height);
-  std::vector<Ring> bottom{reversed(low)};
+  std::vector<Ring> bottom{backward(low)};
   std::vector<Ring> top{high};
   add_walls(arrays, low, high);
   for (Index i = 0; i < cells; ++i) {
@@ -183,8 +183,8 @@ Shape plate(Random& random, Index size) {
     const std::int64_t floor = kind == 1 ? 0 : height / 3;
     const Ring from = add_polygon(arrays, x, y, floor, sides, radius);
     const Ring to = add_polygon(arrays, x, y, height, sides, radius);
-    add_walls(arrays, reversed(from), reversed(to));
-    top.push_back(reversed(to));
+    add_walls(arrays, backward(from), backward(to));
+    top.push_back(backward(to));
     if (kind == 1) {
       bottom.push_back(from);
     } else {
@@ -215,7 +215,7 @@ Shape fan(Random& random, Index size) {
     add_facet(arrays, {{base[i], next, top}});
     if (is_double) add_facet(arrays, {{next, base[i], below}});
   }
-  if (!is_double) add_facet(arrays, {reversed(base)});
+  if (!is_double) add_facet(arrays, {backward(base)});
   arrays.end_shell();
   return {"fan", std::move(arrays)};
 }
@@ -226,7 +226,7 @@ Shape two_sided(Random& random, Index size) {
   const Ring ring = add_polygon(arrays, 7, 9, between(random, -5, 5), std::max<Index>(size, 3),
                                 std::max<std::int64_t>(size, 50));
   add_facet(arrays, {ring});
-  add_facet(arrays, {reversed(ring)});
+  add_facet(arrays, {backward(ring)});
   arrays.end_shell();
   return {"two-sided", std::move(arrays)};
 }
@@ -282,7 +282,7 @@ Shape tube(Random& random, Index size) {
     add_walls(arrays, rings[i], rings[(i + 1) % along]);
   }
   if (!is_closed) {
-    add_facet(arrays, {reversed(rings.front())});
+    add_facet(arrays, {backward(rings.front())});
     add_facet(arrays, {rings.back()});
   }
   arrays.end_shell();

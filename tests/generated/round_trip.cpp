@@ -13,8 +13,8 @@
 namespace watertight::generated {
 namespace {
 
-constexpr std::array kModes{Mode::raw,     Mode::bitmap,        Mode::walk,
-                            Mode::polygon, Mode::parallelogram, Mode::automatic};
+constexpr std::array kTriedModes{Mode::raw,     Mode::bitmap,        Mode::walk,
+                                 Mode::polygon, Mode::parallelogram, Mode::automatic};
 
 std::string without_numbers(std::string message) {
   message.erase(
@@ -85,7 +85,7 @@ void RoundTrips::check_all_modes(const std::string& name, const OrientedBoundary
                                  const Acceptance& acceptance) {
   Random random(boundary.solid().vertex_count());
   const OrientedBoundary other = shuffled(boundary, random);
-  for (const Mode mode : kModes) {
+  for (const Mode mode : kTriedModes) {
     EncodeOptions options{.mode = mode};
     check(name, boundary, acceptance, options);
     options.keep_order = false;
@@ -106,7 +106,7 @@ std::uint64_t RoundTrips::check_generated(std::uint64_t seed, Index largest) {
   if (random.below(16) == 0) {
     const auto count = static_cast<Index>(1 + random.below(random.below(32) == 0 ? 256 : 24));
     const auto solids = random_page(random, count, std::min<Index>(largest, 2000));
-    if (random.below(2) == 0) options.mode = kModes[random.below(kModes.size())];
+    if (random.below(2) == 0) options.mode = kTriedModes[random.below(kTriedModes.size())];
     check_page(name + " page", solids, acceptance, options);
     return count;
   }
@@ -116,7 +116,8 @@ std::uint64_t RoundTrips::check_generated(std::uint64_t seed, Index largest) {
     check_all_modes(name, solid.boundary, acceptance);
     return 1;
   }
-  options.mode = kModes[random.below(2 * kModes.size()) % (kModes.size() + 3) % kModes.size()];
+  options.mode = kTriedModes[random.below(2 * kTriedModes.size()) % (kTriedModes.size() + 3) %
+                             kTriedModes.size()];
   check(name, solid.boundary, acceptance, options);
   return 1;
 }

@@ -20,7 +20,7 @@ using namespace watertight::solids;
 
 namespace {
 
-delaunay::EngineWorkers& engines() {
+delaunay::EngineWorkers& ring_engines() {
   static delaunay::EngineWorkers workers;
   return workers;
 }
@@ -28,7 +28,7 @@ delaunay::EngineWorkers& engines() {
 Inspection inspect(const Solid& solid, Proof proof = Proof::boundary) {
   CertifyOptions options;
   options.proof = proof;
-  return certify(solid, proof == Proof::boundary ? nullptr : &engines(), options);
+  return certify(solid, proof == Proof::boundary ? nullptr : &ring_engines(), options);
 }
 
 /// The valid solids of touching_rings() and some random ones.

@@ -24,7 +24,7 @@ std::string cut(std::string_view text) {
   return std::string(text.substr(0, end)).append("...");
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result(1, '\'');
   return result.append(cut(text)).append(1, '\'');
 }
@@ -158,13 +158,13 @@ class FaultFinder {
 }  // namespace
 
 std::string element_name(const GraphElement& element) {
-  std::string name = element.id.empty() ? std::string("on") : quoted(element.id);
+  std::string name = element.id.empty() ? std::string("on") : in_quotes(element.id);
   name.append(element.id.empty() ? " line " : " (line ").append(std::to_string(element.line));
   if (!element.id.empty()) name.append(1, ')');
   return name;
 }
 
-std::string quoted_reference(const GraphLink& link) { return quoted(link.reference); }
+std::string quoted_reference(const GraphLink& link) { return in_quotes(link.reference); }
 
 IndoorLinks::IndoorLinks(const geometry::CellGraph& graph)
     : graph_(graph), states_(graph.cells.size(), kNone), cells_(graph.states.size(), kNone) {

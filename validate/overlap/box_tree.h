@@ -59,4 +59,13 @@ inline Box box_of(const Triangle& triangle, std::span<const Point> vertices) {
   return box;
 }
 
+/// The boxes of triangles, in their order.
+inline std::vector<Box> boxes_of(std::span<const Point> vertices,
+                                 std::span<const Triangle> triangles) {
+  std::vector<Box> boxes;
+  boxes.reserve(triangles.size());
+  for (const Triangle& triangle : triangles) boxes.push_back(box_of(triangle, vertices));
+  return boxes;
+}
+
 }  // namespace watertight::validate

@@ -95,13 +95,6 @@ class RayParity {
   bool is_on_boundary_ = false;
 };
 
-std::vector<Box> boxes_of(std::span<const Point> vertices, std::span<const Triangle> triangles) {
-  std::vector<Box> boxes;
-  boxes.reserve(triangles.size());
-  for (const Triangle& t : triangles) boxes.push_back(box_of(t, vertices));
-  return boxes;
-}
-
 }  // namespace
 
 PointLocator::PointLocator(std::span<const Point> vertices, std::span<const Triangle> triangles)

@@ -53,13 +53,6 @@ Box common_box(const Box& a, const Box& b) {
   return box;
 }
 
-std::vector<Box> boxes_of(std::span<const Point> vertices, std::span<const Triangle> triangles) {
-  std::vector<Box> boxes;
-  boxes.reserve(triangles.size());
-  for (const Triangle& t : triangles) boxes.push_back(box_of(t, vertices));
-  return boxes;
-}
-
 /// The sides of a triangle's plane on which corners of another triangle lie.
 struct Sides {
   bool has_inner = false;

@@ -161,17 +161,17 @@ void check_normals(ExaminedSolid& examined, Index facet) {
 /// The number of parts of a facet whose triangles are connected through edges.
 std::size_t count_parts(std::span<const Triangle> triangles) {
   geometry::DisjointSets sets(triangles.size());
-  struct Side {
+  struct FacetSide {
     Index low, high, triangle;
   };
-  std::vector<Side> sides;
+  std::vector<FacetSide> sides;
   for (Index t = 0; t < triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [low, high] = std::minmax({triangles[t][i], triangles[t][(i + 1) % 3]});
       sides.push_back({low, high, t});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::sort(sides.begin(), sides.end(), [](const FacetSide& a, const FacetSide& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
   std::size_t parts = triangles.size();

@@ -10,15 +10,6 @@
 namespace watertight::formats {
 namespace {
 
-std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (!(text = without_blanks(text)).empty()) {
-    words.push_back(text.substr(0, text.find_first_of(" \t\r\n")));
-    text.remove_prefix(words.back().size());
-  }
-  return words;
-}
-
 bool is_number(const Json& value) { return value.is_binary(); }
 
 // The members of a material that CityJSON has; the colours are lists of three numbers.

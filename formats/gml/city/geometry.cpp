@@ -7,14 +7,6 @@
 #include "formats/gml/elements.h"
 
 namespace watertight::formats {
-namespace {
-
-bool is_surface(GmlKind kind) {
-  return kind == GmlKind::polygon || kind == GmlKind::surfaces || kind == GmlKind::orientable;
-}
-
-}  // namespace
-
 GeometryReader::GeometryReader(const GmlTree& tree, std::uint64_t byte_count, const Limits& limits)
     : tree_(tree),
       limits_(limits),

@@ -15,21 +15,6 @@
 namespace watertight::formats {
 namespace {
 
-// Takes the next word off the front of the text; "" at its end.
-std::string_view take_word(std::string_view& text, std::string_view separators) {
-  const std::size_t start = text.find_first_not_of(separators);
-  if (start == std::string_view::npos) {
-    text = {};
-    return {};
-  }
-  text.remove_prefix(start);
-  const std::string_view word = text.substr(0, text.find_first_of(separators));
-  text.remove_prefix(word.size());
-  return word;
-}
-
-constexpr std::string_view kBlanks = " \t\r\n";
-
 double pole_of(std::string_view system) {
   return is_in_order_of_authority(system)
              ? watertight::geometry::pole_of_first_axis(srid_of_srs_name(system))
@@ -114,10 +99,10 @@ Status GeometryReader::read_numbers(Index element, std::vector<Index>& out) {
   }
   while (true) {
     std::array<std::string_view, 3> words;
-    words[0] = take_word(text, kBlanks);
+    words[0] = take_word(text);
     if (words[0].empty()) return Done{};
-    words[1] = take_word(text, kBlanks);
-    words[2] = take_word(text, kBlanks);
+    words[1] = take_word(text);
+    words[2] = take_word(text);
     if (words[2].empty()) {
       return wrong(element, ErrorCode::unsupported,
                    "positions of other than three numbers are not read");

@@ -8,8 +8,6 @@
 namespace watertight::formats {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
-
 // Expat writes a qualified name as the namespace, a line feed and the local name.
 std::pair<std::string_view, std::string_view> split_name(std::string_view name) {
   const std::size_t at = name.find('\n');
@@ -18,12 +16,6 @@ std::pair<std::string_view, std::string_view> split_name(std::string_view name) 
 }
 
 }  // namespace
-
-std::string_view without_blanks(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
-}
 
 bool is_object_name(std::string_view name) {
   return !name.empty() && name.front() >= 'A' && name.front() <= 'Z';

@@ -128,9 +128,6 @@ class TreeMarks {
   std::vector<bool> is_lost_;
 };
 
-/// The text without blanks at both ends.
-std::string_view without_blanks(std::string_view text);
-
 /// True for a name that begins with a capital letter: objects and values, not properties.
 bool is_object_name(std::string_view name);
 

@@ -14,7 +14,7 @@ using test::kParallelogram;
 using test::read;
 using test::write;
 
-codec::IntegerSolid integers_of(const OrientedBoundary& boundary) {
+codec::IntegerSolid dense_integers_of(const OrientedBoundary& boundary) {
   auto solid = test::integers_of(boundary);
   REQUIRE(solid);
   return *std::move(solid);
@@ -44,10 +44,10 @@ std::vector<Triangle> tetrahedron(Index a, Index b, Index c, Index d) {
 }
 
 TEST_CASE("mode parallelogram brings triangle surfaces of any genus back") {
-  check_round_trip(integers_of(generated::torus(12, 9)));
-  check_round_trip(integers_of(generated::torus(16, 12)));
+  check_round_trip(dense_integers_of(generated::torus(12, 9)));
+  check_round_trip(dense_integers_of(generated::torus(16, 12)));
   generated::Random random(7);
-  codec::IntegerSolid rough = integers_of(generated::torus(16, 16));
+  codec::IntegerSolid rough = dense_integers_of(generated::torus(16, 16));
   for (codec::GridPoint& vertex : rough.vertices) {
     for (std::int64_t& coordinate : vertex) {
       coordinate = 1000 * coordinate + static_cast<std::int64_t>(random.below(900));
@@ -80,7 +80,7 @@ TEST_CASE("mode parallelogram keeps coordinates near the end of their range") {
 }
 
 TEST_CASE("mode parallelogram begins from the page's last position") {
-  codec::IntegerSolid solid = integers_of(generated::torus(5, 4));
+  codec::IntegerSolid solid = dense_integers_of(generated::torus(5, 4));
   for (codec::GridPoint& vertex : solid.vertices) vertex[0] += 1'000'000'000;
   codec::PageMemory memory;
   memory.add(solid);
@@ -89,7 +89,7 @@ TEST_CASE("mode parallelogram begins from the page's last position") {
 }
 
 TEST_CASE("mode parallelogram refuses polygons and open surfaces") {
-  const auto polygons = write(kParallelogram, integers_of(generated::box()));
+  const auto polygons = write(kParallelogram, dense_integers_of(generated::box()));
   REQUIRE(!polygons);
   CHECK(polygons.error().code == ErrorCode::not_encodable);
   auto open = tetrahedron(0, 1, 2, 3);
@@ -103,15 +103,16 @@ TEST_CASE("mode parallelogram refuses polygons and open surfaces") {
 TEST_CASE("mode parallelogram writes the same bytes whatever the order of facets") {
   generated::Random random(3);
   const OrientedBoundary torus = generated::torus(9, 5);
-  const auto bytes = write(kParallelogram, integers_of(torus));
-  const auto shuffled = write(kParallelogram, integers_of(generated::shuffled(torus, random)));
+  const auto bytes = write(kParallelogram, dense_integers_of(torus));
+  const auto shuffled =
+      write(kParallelogram, dense_integers_of(generated::shuffled(torus, random)));
   REQUIRE(bytes);
   REQUIRE(shuffled);
   CHECK(*bytes == *shuffled);
 }
 
 TEST_CASE("mode parallelogram checks its limits before it grows") {
-  const auto bytes = write(kParallelogram, integers_of(generated::torus(16, 12)));
+  const auto bytes = write(kParallelogram, dense_integers_of(generated::torus(16, 12)));
   REQUIRE(bytes);
   Limits few;
   few.vertices = 100;
@@ -122,7 +123,7 @@ TEST_CASE("mode parallelogram checks its limits before it grows") {
 }
 
 TEST_CASE("mode parallelogram survives damaged streams") {
-  test::check_damaged(kParallelogram, integers_of(generated::torus(6, 5)), 3000);
+  test::check_damaged(kParallelogram, dense_integers_of(generated::torus(6, 5)), 3000);
   generated::Random random(11);
   Limits limits;
   limits.vertices = limits.facets = 2000;

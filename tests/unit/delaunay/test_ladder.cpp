@@ -16,14 +16,15 @@ namespace {
 
 using samples::Shape;
 
-delaunay::EngineWorkers& engines() {
+delaunay::EngineWorkers& ladder_engines() {
   static delaunay::EngineWorkers workers;
   return workers;
 }
 
 delaunay::LadderResult climb(const Shape& shape, const delaunay::LadderOptions& options = {}) {
   const Solid solid = samples::make_solid(shape);
-  return delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &engines(), options);
+  return delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &ladder_engines(),
+                                options);
 }
 
 delaunay::LadderOptions only(delaunay::Engine engine) {
@@ -89,8 +90,8 @@ TEST_CASE("solids whose rings touch inside edges are proved with divided rings, 
     REQUIRE(facets.divided);
     CHECK(delaunay::climb_ladder(facets.divided_solid(solid), facets, nullptr, {}).certificate);
     for (const delaunay::Engine engine : {delaunay::Engine::cgal, delaunay::Engine::tetgen}) {
-      const delaunay::LadderResult result =
-          delaunay::climb_ladder(facets.divided_solid(solid), facets, &engines(), only(engine));
+      const delaunay::LadderResult result = delaunay::climb_ladder(
+          facets.divided_solid(solid), facets, &ladder_engines(), only(engine));
       INFO(attempts(result));
       CHECK(result.certificate);
     }
@@ -135,7 +136,7 @@ TEST_CASE("engines that are not there leave a solid undecided") {
 }
 
 TEST_CASE("Schoenhardt's prism needs Steiner points and gets them on every rung") {
-  REQUIRE(engines().cgal() != nullptr);
+  REQUIRE(ladder_engines().cgal() != nullptr);
   const delaunay::LadderResult automatic = climb(samples::schoenhardt());
   INFO(attempts(automatic));
   REQUIRE(automatic.certificate.has_value());
@@ -161,7 +162,7 @@ TEST_CASE("Schoenhardt's prism needs Steiner points and gets them on every rung"
 }
 
 TEST_CASE("TetGen's result passes the same certificate") {
-  if (engines().tetgen() == nullptr) SKIP("watertight-tetgen is not built");
+  if (ladder_engines().tetgen() == nullptr) SKIP("watertight-tetgen is not built");
   for (const Shape& shape : {samples::schoenhardt(), samples::box({0, 0, 0}, {5, 6, 7}),
                              samples::tunnelled_box(), samples::stairs(4)}) {
     const delaunay::LadderResult result = climb(shape, only(delaunay::Engine::tetgen));
@@ -194,7 +195,7 @@ TEST_CASE("two bodies are invalid on every rung") {
   samples::add_box_facets(beside, {3000, 0, 0}, {4000, 700, 800}, false);
   for (const delaunay::Engine engine :
        {delaunay::Engine::automatic, delaunay::Engine::cgal, delaunay::Engine::tetgen}) {
-    if (engine == delaunay::Engine::tetgen && engines().tetgen() == nullptr) continue;
+    if (engine == delaunay::Engine::tetgen && ladder_engines().tetgen() == nullptr) continue;
     const delaunay::LadderResult result = climb(beside, only(engine));
     INFO(attempts(result));
     CHECK_FALSE(result.certificate.has_value());
@@ -217,7 +218,7 @@ TEST_CASE("a strict ladder keeps the canonical triangles of a facet that is not 
   delaunay::LadderOptions strict;
   strict.strict = true;
   const delaunay::LadderResult result =
-      delaunay::climb_ladder(solid, canonical, &engines(), strict);
+      delaunay::climb_ladder(solid, canonical, &ladder_engines(), strict);
   INFO(attempts(result));
   REQUIRE(result.certificate.has_value());
   CHECK(result.certificate->refilled_facets.empty());

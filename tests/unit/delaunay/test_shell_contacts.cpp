@@ -18,7 +18,7 @@ namespace {
 
 using samples::Shape;
 
-delaunay::EngineWorkers& engines() {
+delaunay::EngineWorkers& contact_engines() {
   static delaunay::EngineWorkers workers;
   return workers;
 }
@@ -97,12 +97,13 @@ std::vector<Shape> touching() {
   return shapes;
 }
 
-delaunay::LadderResult climb(const Shape& shape, const delaunay::LadderOptions& options) {
+delaunay::LadderResult climb_contacts(const Shape& shape, const delaunay::LadderOptions& options) {
   const Solid solid = samples::make_solid(shape);
-  return delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &engines(), options);
+  return delaunay::climb_ladder(solid, tessellate::triangulate_facets(solid), &contact_engines(),
+                                options);
 }
 
-std::string attempts(const delaunay::LadderResult& result) {
+std::string contact_attempts(const delaunay::LadderResult& result) {
   std::string text;
   for (const delaunay::RungAttempt& attempt : result.attempts) {
     text.append("[").append(delaunay::to_string(attempt.rung)).append(": ");
@@ -116,11 +117,12 @@ TEST_CASE("a cavity may touch a facet of another shell from within, on every run
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     for (const delaunay::Rung rung : {delaunay::Rung::delaunay, delaunay::Rung::patch,
                                       delaunay::Rung::triangles_scaled, delaunay::Rung::tetgen}) {
-      if (rung == delaunay::Rung::tetgen && engines().tetgen() == nullptr) continue;
+      if (rung == delaunay::Rung::tetgen && contact_engines().tetgen() == nullptr) continue;
       delaunay::LadderOptions options;
       options.first_rung = rung;
-      const delaunay::LadderResult result = climb(shapes[i], options);
-      INFO("shape " << i << " from " << delaunay::to_string(rung) << ": " << attempts(result));
+      const delaunay::LadderResult result = climb_contacts(shapes[i], options);
+      INFO("shape " << i << " from " << delaunay::to_string(rung) << ": "
+                    << contact_attempts(result));
       CHECK(result.certificate.has_value());
       CHECK(result.obstacle.empty());
       if (rung != delaunay::Rung::delaunay) CHECK(result.attempts.size() == 1);
@@ -131,19 +133,19 @@ TEST_CASE("a cavity may touch a facet of another shell from within, on every run
 TEST_CASE("the Delaunay tetrahedralization alone proves a contact where it has the faces") {
   delaunay::LadderOptions options;
   options.last_rung = delaunay::Rung::delaunay;
-  const delaunay::LadderResult result = climb(tip_on_wall({100, 100, 200}), options);
-  INFO(attempts(result));
+  const delaunay::LadderResult result = climb_contacts(tip_on_wall({100, 100, 200}), options);
+  INFO(contact_attempts(result));
   CHECK(result.certificate.has_value());
 }
 
 TEST_CASE("a cavity that touches the walls all around divides the interior") {
   for (const delaunay::Rung rung : {delaunay::Rung::delaunay, delaunay::Rung::patch,
                                     delaunay::Rung::triangles_scaled, delaunay::Rung::tetgen}) {
-    if (rung == delaunay::Rung::tetgen && engines().tetgen() == nullptr) continue;
+    if (rung == delaunay::Rung::tetgen && contact_engines().tetgen() == nullptr) continue;
     delaunay::LadderOptions options;
     options.first_rung = rung;
-    const delaunay::LadderResult result = climb(divided(), options);
-    INFO(attempts(result));
+    const delaunay::LadderResult result = climb_contacts(divided(), options);
+    INFO(contact_attempts(result));
     CHECK(delaunay::to_string(result.property) == "interior-disconnected");
   }
 }
@@ -153,8 +155,8 @@ TEST_CASE("edges of different shells that cross in no vertex are named") {
   Shape shape =
       samples::prism({{0, 0}, {200, 0}, {200, 200}, {100, 200}, {100, 100}, {0, 100}}, 200);
   add_tetrahedron(shape, {{150, 40, 60}, {160, 40, 120}, {50, 100, 100}, {150, 100, 103}});
-  const delaunay::LadderResult result = climb(shape, {});
-  INFO(attempts(result));
+  const delaunay::LadderResult result = climb_contacts(shape, {});
+  INFO(contact_attempts(result));
   CHECK(result.obstacle.find("cross in a point that is not a vertex") != std::string::npos);
   CHECK(result.property == delaunay::CertificateRefusal::none);
 }
@@ -188,8 +190,8 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
           mean({points[t[0]], points[t[0]], points[t[1]], points[t[2]]});
       Shape touched = warped;
       add_tetrahedron(touched, {{100, 50, 90}, {150, 100, 80}, {50, 150, 90}, tip});
-      const delaunay::LadderResult result = climb(touched, {});
-      INFO(attempts(result));
+      const delaunay::LadderResult result = climb_contacts(touched, {});
+      INFO(contact_attempts(result));
       CHECK(result.certificate.has_value());
       CHECK(result.obstacle.empty());
       const Triangle& other = &t == &roof[0] ? roof[1] : roof[0];
@@ -210,8 +212,8 @@ TEST_CASE("a roof that is not planar may be touched on its triangles, but not ac
                               {110, 120, 80},
                               {middle.x + dx, middle.y + dy, middle.z},
                               {middle.x - dx, middle.y - dy, middle.z}});
-    const delaunay::LadderResult result = climb(crossed, {});
-    INFO(attempts(result));
+    const delaunay::LadderResult result = climb_contacts(crossed, {});
+    INFO(contact_attempts(result));
     CHECK(result.obstacle.find("(or folds) cross") != std::string::npos);
     CHECK(result.property == delaunay::CertificateRefusal::none);
   }
@@ -256,7 +258,7 @@ TEST_CASE("shells without contacts, and single shells, are left as they are") {
 TEST_CASE("a vertex that is not exactly on the facet is no contact") {
   // The proof of a solid with a tip on the wall must not hold for a solid whose tip is one unit, or
   // the least double, off the wall.
-  const delaunay::LadderResult result = climb(tip_on_wall({100, 60, 200}), {});
+  const delaunay::LadderResult result = climb_contacts(tip_on_wall({100, 60, 200}), {});
   REQUIRE(result.certificate.has_value());
   const double below = 200 - 0x1p-45;
   for (const Point tip : {Point{100, 60, 199}, Point{100, 60, below}}) {
@@ -273,7 +275,8 @@ TEST_CASE("a facet's faces must reach its own edge where another shell touches i
   // A face of a wall is given to the neighbouring wall, at a contact in their common edge.
   const Solid solid = samples::make_solid(tip_on_wall({110, 0, 200}));
   const tessellate::FacetTriangles canonical = tessellate::triangulate_facets(solid);
-  const delaunay::LadderResult result = delaunay::climb_ladder(solid, canonical, &engines(), {});
+  const delaunay::LadderResult result =
+      delaunay::climb_ladder(solid, canonical, &contact_engines(), {});
   REQUIRE(result.certificate.has_value());
   const delaunay::Tetrahedralization& proof = result.certificate->tetrahedralization;
   for (std::size_t i = 0; i < proof.constrained.size(); ++i) {

@@ -16,7 +16,7 @@
 namespace watertight {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // The error that each broken file must give: a JSON Pointer or a part of the message.
 const std::map<std::string, std::string> kBroken{
@@ -40,13 +40,13 @@ std::vector<std::string> city_files() {
   return names;
 }
 
-std::vector<Json> json_lines(std::string_view text, Format format) {
-  if (format == Format::city_json) return {Json::parse(text)};
-  std::vector<Json> lines;
+std::vector<OrderedJson> json_lines(std::string_view text, Format format) {
+  if (format == Format::city_json) return {OrderedJson::parse(text)};
+  std::vector<OrderedJson> lines;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     if (text.substr(0, end).find_first_not_of(" \r\t") != std::string_view::npos) {
-      lines.push_back(Json::parse(text.substr(0, end)));
+      lines.push_back(OrderedJson::parse(text.substr(0, end)));
     }
     text.remove_prefix(std::min(end + 1, text.size()));
   }
@@ -91,22 +91,22 @@ TEST_CASE("broken city models give an error that names the place") {
 
 // Replaces vertex and appearance indices by the elements that they name, so that two city models
 // compare equal if they differ in these numbers only.
-Json resolved(const Json& nested, const Json& list) {
+OrderedJson resolved(const OrderedJson& nested, const OrderedJson& list) {
   if (nested.is_array()) {
-    Json out = Json::array();
-    for (const Json& element : nested) out.push_back(resolved(element, list));
+    OrderedJson out = OrderedJson::array();
+    for (const OrderedJson& element : nested) out.push_back(resolved(element, list));
     return out;
   }
   return nested.is_null() ? nested : list.at(nested.get<std::size_t>());
 }
 
-Json resolved_texture(const Json& nested, const Json& appearance) {
+OrderedJson resolved_texture(const OrderedJson& nested, const OrderedJson& appearance) {
   if (!nested.empty() && nested[0].is_array()) {
-    Json out = Json::array();
-    for (const Json& element : nested) out.push_back(resolved_texture(element, appearance));
+    OrderedJson out = OrderedJson::array();
+    for (const OrderedJson& element : nested) out.push_back(resolved_texture(element, appearance));
     return out;
   }
-  Json out = Json::array();
+  OrderedJson out = OrderedJson::array();
   for (std::size_t i = 0; i < nested.size(); ++i) {
     out.push_back(resolved(nested[i],
                            i == 0 ? appearance.at("textures") : appearance.at("vertices-texture")));
@@ -114,7 +114,8 @@ Json resolved_texture(const Json& nested, const Json& appearance) {
   return out;
 }
 
-void resolve_geometry(Json& geometry, const Json& vertices, const Json& appearance) {
+void resolve_geometry(OrderedJson& geometry, const OrderedJson& vertices,
+                      const OrderedJson& appearance) {
   if (geometry.contains("boundaries")) {
     geometry["boundaries"] = resolved(geometry["boundaries"], vertices);
   }
@@ -132,18 +133,20 @@ void resolve_geometry(Json& geometry, const Json& vertices, const Json& appearan
   }
 }
 
-Json resolved_model(std::string_view text) {
-  Json model = Json::parse(text);
-  const Json vertices = model["vertices"];
-  const Json appearance = model.contains("appearance") ? model["appearance"] : Json::object();
+OrderedJson resolved_model(std::string_view text) {
+  OrderedJson model = OrderedJson::parse(text);
+  const OrderedJson vertices = model["vertices"];
+  const OrderedJson appearance =
+      model.contains("appearance") ? model["appearance"] : OrderedJson::object();
   for (auto& [id, object] : model["CityObjects"].items()) {
     if (object.contains("geometry")) {
-      for (Json& geometry : object["geometry"]) resolve_geometry(geometry, vertices, appearance);
+      for (OrderedJson& geometry : object["geometry"])
+        resolve_geometry(geometry, vertices, appearance);
     }
     if (object.contains("address")) {
-      for (Json& address : object["address"]) {
+      for (OrderedJson& address : object["address"]) {
         if (!address.is_object() || !address.contains("location")) continue;
-        Json& boundaries = address["location"]["boundaries"];
+        OrderedJson& boundaries = address["location"]["boundaries"];
         boundaries = resolved(boundaries, vertices);
       }
     }

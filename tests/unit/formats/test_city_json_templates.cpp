@@ -49,7 +49,7 @@ std::string note_of(const std::string& text) {
   return document->notes.front();
 }
 
-Error error_of(const std::string& text) {
+Error template_error(const std::string& text) {
   const auto document = read(text, Format::city_json);
   REQUIRE_FALSE(document);
   CHECK_FALSE(document.error().message.empty());
@@ -121,12 +121,12 @@ TEST_CASE("errors in templates name the place") {
   CHECK(note_of(model(section(geometry("Solid", "5")), good)).ends_with(" at " + base + "/0"));
   CHECK(note_of(model(section("5"), good)).ends_with(" at " + base + "/0"));
   CHECK(note_of(model(section("{}"), good)).ends_with(" at " + base + "/0"));
-  CHECK(error_of(model(R"("geometry-templates":{},)", good)).pointer == base);
-  CHECK(error_of(model(R"("geometry-templates":{"templates":[{}]},)", good)).pointer ==
+  CHECK(template_error(model(R"("geometry-templates":{},)", good)).pointer == base);
+  CHECK(template_error(model(R"("geometry-templates":{"templates":[{}]},)", good)).pointer ==
         "/geometry-templates/vertices-templates");
-  CHECK(error_of(model(section(geometry("Solid", "[]"), "[[0,0]]"), good)).pointer ==
+  CHECK(template_error(model(section(geometry("Solid", "[]"), "[[0,0]]"), good)).pointer ==
         "/geometry-templates/vertices-templates/0");
-  CHECK(error_of(model(section(geometry("Solid", "[]"), "[[0,0,\"1\"]]"), good)).pointer ==
+  CHECK(template_error(model(section(geometry("Solid", "[]"), "[[0,0,\"1\"]]"), good)).pointer ==
         "/geometry-templates/vertices-templates/0/2");
 }
 

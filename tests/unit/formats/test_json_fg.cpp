@@ -27,7 +27,7 @@ std::string polyhedron(const std::string& shells) {
   return R"({"type":"Polyhedron","coordinates":[)" + shells + "]}";
 }
 
-Error error_of(const std::string& text) {
+Error json_fg_error(const std::string& text) {
   const auto document = read(text, Format::json_fg);
   REQUIRE_FALSE(document);
   CHECK_FALSE(document.error().message.empty());
@@ -101,31 +101,32 @@ TEST_CASE("JSON-FG keeps more digits than a double has, and says what it rounds"
 }
 
 TEST_CASE("GeoJSON without a polyhedron is unsupported") {
-  CHECK(error_of(feature("null")).code == ErrorCode::unsupported);
-  CHECK(error_of(R"({"type":"Feature","geometry":null})").code == ErrorCode::unsupported);
-  CHECK(error_of(feature(R"({"type":"Polygon","coordinates":[]})")).message.find("GeoJSON") !=
+  CHECK(json_fg_error(feature("null")).code == ErrorCode::unsupported);
+  CHECK(json_fg_error(R"({"type":"Feature","geometry":null})").code == ErrorCode::unsupported);
+  CHECK(json_fg_error(feature(R"({"type":"Polygon","coordinates":[]})")).message.find("GeoJSON") !=
         std::string::npos);
-  const Error prism = error_of(feature(R"({"type":"Prism","base":{}})"));
+  const Error prism = json_fg_error(feature(R"({"type":"Prism","base":{}})"));
   CHECK(prism.code == ErrorCode::unsupported);
   CHECK(prism.pointer == "/place");
   CHECK(read(R"({"type":"FeatureCollection","features":[]})", Format::json_fg));
 }
 
 TEST_CASE("JSON-FG errors have a pointer") {
-  CHECK(error_of(feature(polyhedron("5"))).pointer == "/place/coordinates/0");
-  CHECK(error_of(feature(polyhedron("[5]"))).pointer == "/place/coordinates/0/0");
-  CHECK(error_of(feature(polyhedron("[[5]]"))).pointer == "/place/coordinates/0/0/0");
-  CHECK(error_of(feature(polyhedron("[[[5]]]"))).pointer == "/place/coordinates/0/0/0/0");
-  CHECK(error_of(feature(polyhedron("[[[[1,2]]]]"))).pointer == "/place/coordinates/0/0/0/0");
-  CHECK(error_of(feature(polyhedron("[[[[1,2,\"3\"]]]]"))).pointer ==
+  CHECK(json_fg_error(feature(polyhedron("5"))).pointer == "/place/coordinates/0");
+  CHECK(json_fg_error(feature(polyhedron("[5]"))).pointer == "/place/coordinates/0/0");
+  CHECK(json_fg_error(feature(polyhedron("[[5]]"))).pointer == "/place/coordinates/0/0/0");
+  CHECK(json_fg_error(feature(polyhedron("[[[5]]]"))).pointer == "/place/coordinates/0/0/0/0");
+  CHECK(json_fg_error(feature(polyhedron("[[[[1,2]]]]"))).pointer == "/place/coordinates/0/0/0/0");
+  CHECK(json_fg_error(feature(polyhedron("[[[[1,2,\"3\"]]]]"))).pointer ==
         "/place/coordinates/0/0/0/0/2");
-  CHECK(error_of(feature(R"({"type":"Polyhedron"})")).pointer == "/place/coordinates");
-  CHECK(error_of(R"({"type":"FeatureCollection"})").pointer == "/features");
-  CHECK(error_of(R"({"type":"FeatureCollection","features":[{}]})").pointer == "/features/0/type");
-  CHECK(error_of(R"({"type":"Topology"})").pointer == "/type");
-  CHECK(error_of("[]").pointer == "/type");
-  CHECK(error_of("{").byte_offset.has_value());
-  CHECK(error_of(std::string(100000, '[')).code == ErrorCode::limit_exceeded);
+  CHECK(json_fg_error(feature(R"({"type":"Polyhedron"})")).pointer == "/place/coordinates");
+  CHECK(json_fg_error(R"({"type":"FeatureCollection"})").pointer == "/features");
+  CHECK(json_fg_error(R"({"type":"FeatureCollection","features":[{}]})").pointer ==
+        "/features/0/type");
+  CHECK(json_fg_error(R"({"type":"Topology"})").pointer == "/type");
+  CHECK(json_fg_error("[]").pointer == "/type");
+  CHECK(json_fg_error("{").byte_offset.has_value());
+  CHECK(json_fg_error(std::string(100000, '[')).code == ErrorCode::limit_exceeded);
 }
 
 TEST_CASE("empty polyhedra, shells, polygons and rings are left to the validator") {

@@ -20,7 +20,7 @@ namespace {
 
 using test::read;
 
-Error error_of(const std::string& text, Format format) {
+Error mesh_file_error(const std::string& text, Format format) {
   const auto document = read(text, format);
   REQUIRE_FALSE(document);
   CHECK_FALSE(document.error().message.empty());
@@ -146,24 +146,24 @@ TEST_CASE("STL errors name the place") {
   CHECK_FALSE(read(whole + "x", Format::stl));
   std::string count = whole;
   count[81] = 1;
-  CHECK(error_of(count, Format::stl).message.find("260 triangles") != std::string::npos);
+  CHECK(mesh_file_error(count, Format::stl).message.find("260 triangles") != std::string::npos);
   std::string nan = whole;
   const float value = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(nan.data() + 84 + 50 + 12, &value, 4);
-  CHECK(error_of(nan, Format::stl).byte_offset == 146);
+  CHECK(mesh_file_error(nan, Format::stl).byte_offset == 146);
 
   const std::string text = text_stl("x");
   for (const std::size_t size :
        {std::size_t{5}, text.size() / 3, text.size() / 2, std::size_t{150}}) {
     CHECK_FALSE(read(text.substr(0, size), Format::stl));
   }
-  CHECK(error_of("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n", Format::stl)
+  CHECK(mesh_file_error("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n", Format::stl)
             .byte_offset == 49);
-  CHECK(error_of("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", Format::stl)
+  CHECK(mesh_file_error("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", Format::stl)
             .message.starts_with("line "));
-  CHECK(error_of("solid x\nfacet normal 0 0\nouter loop\n", Format::stl).code ==
+  CHECK(mesh_file_error("solid x\nfacet normal 0 0\nouter loop\n", Format::stl).code ==
         ErrorCode::malformed);
-  CHECK(error_of("solid x\nvertex 0 0 0\n", Format::stl).message.starts_with("line 2: "));
+  CHECK(mesh_file_error("solid x\nvertex 0 0 0\n", Format::stl).message.starts_with("line 2: "));
 }
 
 TEST_CASE("STL obeys the limits") {
@@ -229,7 +229,7 @@ TEST_CASE("PLY coordinates may have any scalar type") {
   CHECK(solid.world(2) == std::array<double, 3>{-2, 65533, -70000});
   std::string negative = bytes;
   negative[negative.size() - 13] = '\xFF';
-  CHECK(error_of(negative, Format::ply).message.find("negative") != std::string::npos);
+  CHECK(mesh_file_error(negative, Format::ply).message.find("negative") != std::string::npos);
 }
 
 TEST_CASE("every truncated PLY is refused") {
@@ -249,13 +249,13 @@ TEST_CASE("PLY refuses what it cannot hold before it allocates") {
   const std::string tail =
       "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n0 0 0\n";
-  CHECK(error_of(head + "18446744073709551615" + tail, Format::ply).message.find("more elements") !=
+  CHECK(mesh_file_error(head + "18446744073709551615" + tail, Format::ply)
+            .message.find("more elements") != std::string::npos);
+  CHECK(mesh_file_error(head + "1" + tail + "4294967295 0 0 0", Format::ply)
+            .message.find("a list of") != std::string::npos);
+  CHECK(mesh_file_error(head + "1" + tail + "3 0 0 1", Format::ply).message.find("out of range") !=
         std::string::npos);
-  CHECK(error_of(head + "1" + tail + "4294967295 0 0 0", Format::ply).message.find("a list of") !=
-        std::string::npos);
-  CHECK(error_of(head + "1" + tail + "3 0 0 1", Format::ply).message.find("out of range") !=
-        std::string::npos);
-  CHECK(error_of(head + "1" + tail + "3 0 0 -1", Format::ply).byte_offset.has_value());
+  CHECK(mesh_file_error(head + "1" + tail + "3 0 0 -1", Format::ply).byte_offset.has_value());
   CHECK_FALSE(read(head + "1" + tail + "3 0 0 0.5", Format::ply));
   CHECK_FALSE(read(head + "-1" + tail, Format::ply));
 }
@@ -275,11 +275,11 @@ TEST_CASE("PLY headers that say too little or something unknown are refused") {
         "vertex_index\nend_header\n"}) {
     CHECK_FALSE(read(text, Format::ply));
   }
-  CHECK(error_of("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n",
-                 Format::ply)
+  CHECK(mesh_file_error("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n",
+                        Format::ply)
             .byte_offset == 21);
-  CHECK(error_of("ply\nformat ascii 1.0\nelement face 1\nend_header\n", Format::ply).byte_offset ==
-        21);
+  CHECK(mesh_file_error("ply\nformat ascii 1.0\nelement face 1\nend_header\n", Format::ply)
+            .byte_offset == 21);
   CHECK(only_solid("ply\nformat ascii 1.0\nend_header\n", Format::ply).facet_count() == 0);
   CHECK_FALSE(read(text_ply("0 7 nan 0\n.1 7 0 0\n0 7 .1 0\n0 7 0 0.10\n"), Format::ply));
 }
@@ -319,7 +319,7 @@ TEST_CASE("every POLY cut between its lines is refused") {
 }
 
 TEST_CASE("POLY errors name line and byte") {
-  const Error range = error_of(kPolyNodes + "1 0\n1 0\n3 1 2 5\n", Format::poly);
+  const Error range = mesh_file_error(kPolyNodes + "1 0\n1 0\n3 1 2 5\n", Format::poly);
   CHECK(range.message.starts_with("line 8: "));
   CHECK(range.byte_offset == kPolyNodes.size() + 14);
   // The nodes count from 1, so there is no node 0.
@@ -333,7 +333,7 @@ TEST_CASE("POLY errors name line and byte") {
   CHECK_FALSE(read("1 2\n0 0 0\n0\n", Format::poly));
   CHECK_FALSE(read("1 3\n0 0 nan 0\n0\n", Format::poly));
   CHECK_FALSE(read("-1 3\n", Format::poly));
-  CHECK(error_of("0 3\n1 0\n", Format::poly).code == ErrorCode::unsupported);
+  CHECK(mesh_file_error("0 3\n1 0\n", Format::poly).code == ErrorCode::unsupported);
   CHECK(only_solid("1 3\n0 0 0 0\n0\n0\n0\n", Format::poly).facet_count() == 0);
 }
 

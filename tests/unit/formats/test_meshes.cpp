@@ -14,7 +14,7 @@ const std::string kTetrahedron =
     "v 0.5 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1e1\n"
     "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-Error error_of(const std::string& text, Format format) {
+Error mesh_error(const std::string& text, Format format) {
   const auto document = read(text, format);
   REQUIRE_FALSE(document);
   return document.error();
@@ -54,22 +54,22 @@ TEST_CASE("OBJ objects are features that share the vertices of the file") {
 }
 
 TEST_CASE("OBJ errors name line and byte") {
-  const Error nan = error_of("v 0 0 0\nv 0 nan 1\n", Format::obj);
+  const Error nan = mesh_error("v 0 0 0\nv 0 nan 1\n", Format::obj);
   CHECK(nan.byte_offset == 12);
   CHECK(nan.message.starts_with("line 2: "));
-  CHECK(error_of("v 0 0\n", Format::obj).code == ErrorCode::malformed);
-  CHECK(error_of("v 0 0 inf\n", Format::obj).byte_offset == 6);
-  CHECK(error_of("v 0 0 1e999\n", Format::obj).byte_offset == 6);
-  CHECK(error_of("v 0 0 0 2\n", Format::obj).byte_offset == 8);
-  CHECK(error_of("v 0 0 0\nf 0 1 1\n", Format::obj).byte_offset == 10);
-  CHECK(error_of("v 0 0 0\nf -2 1 1\n", Format::obj).byte_offset == 10);
-  CHECK(error_of("v 0 0 0\nf 1 1 2\n", Format::obj).byte_offset == 14);
-  CHECK(error_of("v 0 0 0\nf 1 1 99999999999999999999\n", Format::obj).byte_offset == 14);
-  CHECK(error_of("v 0 0 0\nf 1 1 1/x\n", Format::obj).byte_offset == 14);
-  CHECK(error_of("v 0 0 0\nf\n", Format::obj).byte_offset == 8);
-  CHECK(error_of("v 0 0 0\nface 1\n", Format::obj).byte_offset == 8);
-  CHECK(error_of(std::string("v 0 0 0\n\0\0", 10), Format::obj).byte_offset == 8);
-  CHECK(error_of("v 0 0 0\nf 1 1 \\\n 7", Format::obj).byte_offset == 17);
+  CHECK(mesh_error("v 0 0\n", Format::obj).code == ErrorCode::malformed);
+  CHECK(mesh_error("v 0 0 inf\n", Format::obj).byte_offset == 6);
+  CHECK(mesh_error("v 0 0 1e999\n", Format::obj).byte_offset == 6);
+  CHECK(mesh_error("v 0 0 0 2\n", Format::obj).byte_offset == 8);
+  CHECK(mesh_error("v 0 0 0\nf 0 1 1\n", Format::obj).byte_offset == 10);
+  CHECK(mesh_error("v 0 0 0\nf -2 1 1\n", Format::obj).byte_offset == 10);
+  CHECK(mesh_error("v 0 0 0\nf 1 1 2\n", Format::obj).byte_offset == 14);
+  CHECK(mesh_error("v 0 0 0\nf 1 1 99999999999999999999\n", Format::obj).byte_offset == 14);
+  CHECK(mesh_error("v 0 0 0\nf 1 1 1/x\n", Format::obj).byte_offset == 14);
+  CHECK(mesh_error("v 0 0 0\nf\n", Format::obj).byte_offset == 8);
+  CHECK(mesh_error("v 0 0 0\nface 1\n", Format::obj).byte_offset == 8);
+  CHECK(mesh_error(std::string("v 0 0 0\n\0\0", 10), Format::obj).byte_offset == 8);
+  CHECK(mesh_error("v 0 0 0\nf 1 1 \\\n 7", Format::obj).byte_offset == 17);
 }
 
 TEST_CASE("what follows the coordinates of an OBJ vertex is a weight or a colour") {
@@ -77,7 +77,7 @@ TEST_CASE("what follows the coordinates of an OBJ vertex is a weight or a colour
                                Format::obj));
   for (const std::string vertex : {"v 0 0 0 rubbish", "v 0 0 0 0.5 0.5", "v 0 0 0 0.5 0.5 nan",
                                    "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3"}) {
-    CHECK(error_of(vertex + "\n", Format::obj).code == ErrorCode::malformed);
+    CHECK(mesh_error(vertex + "\n", Format::obj).code == ErrorCode::malformed);
   }
 }
 
@@ -147,19 +147,19 @@ TEST_CASE("OFF reads comments, colours and normals") {
 }
 
 TEST_CASE("OFF errors name the byte") {
-  CHECK(error_of("", Format::off).code == ErrorCode::malformed);
-  CHECK(error_of("OF\n", Format::off).byte_offset == 0);
-  CHECK(error_of("4OFF\n", Format::off).code == ErrorCode::unsupported);
-  CHECK(error_of("OFF BINARY\n", Format::off).code == ErrorCode::unsupported);
-  CHECK(error_of("OFF\n3\n", Format::off).byte_offset == 4);
-  CHECK(error_of("OFF\n-3 1 0\n", Format::off).byte_offset == 4);
-  CHECK(error_of("OFF\n99999999 1 0\n", Format::off).byte_offset == 4);
-  CHECK(error_of("OFF\n1 1 0\n0 0\n", Format::off).byte_offset == 10);
-  CHECK(error_of("OFF\n1 1 0\n0 0 x\n", Format::off).byte_offset == 14);
-  CHECK(error_of("OFF\n1 1 0\n0 0 0\n3 0 0 1\n", Format::off).byte_offset == 22);
-  CHECK(error_of("OFF\n1 1 0\n0 0 0\n4 0 0 0\n", Format::off).byte_offset == 16);
-  CHECK(error_of("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n", Format::off).byte_offset == 22);
-  CHECK(error_of("OFF\n1 2 0\n0 0 0\n3 0 0 0\n", Format::off).byte_offset == 24);
+  CHECK(mesh_error("", Format::off).code == ErrorCode::malformed);
+  CHECK(mesh_error("OF\n", Format::off).byte_offset == 0);
+  CHECK(mesh_error("4OFF\n", Format::off).code == ErrorCode::unsupported);
+  CHECK(mesh_error("OFF BINARY\n", Format::off).code == ErrorCode::unsupported);
+  CHECK(mesh_error("OFF\n3\n", Format::off).byte_offset == 4);
+  CHECK(mesh_error("OFF\n-3 1 0\n", Format::off).byte_offset == 4);
+  CHECK(mesh_error("OFF\n99999999 1 0\n", Format::off).byte_offset == 4);
+  CHECK(mesh_error("OFF\n1 1 0\n0 0\n", Format::off).byte_offset == 10);
+  CHECK(mesh_error("OFF\n1 1 0\n0 0 x\n", Format::off).byte_offset == 14);
+  CHECK(mesh_error("OFF\n1 1 0\n0 0 0\n3 0 0 1\n", Format::off).byte_offset == 22);
+  CHECK(mesh_error("OFF\n1 1 0\n0 0 0\n4 0 0 0\n", Format::off).byte_offset == 16);
+  CHECK(mesh_error("OFF\n1 1 0\n0 0 0\n3 0 0 -1\n", Format::off).byte_offset == 22);
+  CHECK(mesh_error("OFF\n1 2 0\n0 0 0\n3 0 0 0\n", Format::off).byte_offset == 24);
 }
 
 TEST_CASE("a byte order mark before a text is skipped, noted and counted in places") {
@@ -188,7 +188,7 @@ TEST_CASE("a byte order mark before a text is skipped, noted and counted in plac
     CHECK(marked->notes.back() == "byte order mark skipped");
     CHECK_FALSE(read(mark + mark + text, format));
   }
-  CHECK(error_of(mark + "OFF\n3\n", Format::off).byte_offset == 7);
+  CHECK(mesh_error(mark + "OFF\n3\n", Format::off).byte_offset == 7);
 }
 
 TEST_CASE("real mesh files read as documented") {

@@ -217,7 +217,7 @@ TEST_CASE("layers have no names that SQLite and GeoPackages keep for themselves"
   CHECK(geopackage::layer_name("town") == "town");
   CHECK(geopackage::layer_name("GPKG_town") == "layer_GPKG_town");
   CHECK(geopackage::layer_name("sqlite_x") == "layer_sqlite_x");
-  CHECK(geopackage::quoted("a\"b") == "\"a\"\"b\"");
+  CHECK(geopackage::sql_name("a\"b") == "\"a\"\"b\"");
 }
 
 }  // namespace

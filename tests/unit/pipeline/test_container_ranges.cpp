@@ -105,7 +105,7 @@ std::vector<std::string> ids_in(const pipeline::Selected& selected) {
   return ids;
 }
 
-std::string text_of(const Document& document) {
+std::string written_text(const Document& document) {
   const auto text = formats::write_document(document, Format::city_json_seq);
   REQUIRE(text);
   return std::string(as_text(*text));
@@ -158,7 +158,7 @@ TEST_CASE("a file for ranges gives back its document byte for byte") {
   const auto documents = pipeline::decode_container(town_file());
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
-  CHECK(text_of(documents->front()) == samples::sequence(town()));
+  CHECK(written_text(documents->front()) == samples::sequence(town()));
 }
 
 TEST_CASE("a feature is found by its id in four requests, with its line as it was") {
@@ -173,7 +173,7 @@ TEST_CASE("a feature is found by its id in four requests, with its line as it wa
   REQUIRE(selected);
   CHECK(selected->missing.empty());
   REQUIRE(selected->documents.size() == 1);
-  CHECK(text_of(selected->documents.front()) == samples::sequence({house(777)}));
+  CHECK(written_text(selected->documents.front()) == samples::sequence({house(777)}));
   CHECK(served.requests.size() <= 4);
   CHECK(served.total() < 64U << 10U);
 }
@@ -244,7 +244,7 @@ TEST_CASE("what is added follows the bytes of the file, replaces ids, and is fou
   REQUIRE(selected);
   CHECK(selected->missing == std::vector<std::string>{id_of(4)});
   REQUIRE(selected->documents.size() == 1);
-  CHECK(text_of(selected->documents.front()) == samples::sequence({moved, house(2000)}));
+  CHECK(written_text(selected->documents.front()) == samples::sequence({moved, house(2000)}));
   const auto documents = pipeline::decode_container(file);
   REQUIRE(documents);
   REQUIRE(documents->size() == 1);
@@ -434,7 +434,7 @@ TEST_CASE("blocks that are read at once give the document of blocks read in turn
     REQUIRE(opened);
     const auto documents = pipeline::decode_container(*opened, {}, threads);
     REQUIRE(documents);
-    CHECK(text_of(documents->front()) == samples::sequence(town()));
+    CHECK(written_text(documents->front()) == samples::sequence(town()));
   }
 }
 

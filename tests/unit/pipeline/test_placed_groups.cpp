@@ -11,8 +11,8 @@
 namespace watertight {
 namespace {
 
-const std::string kSame = "1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
-const std::string kMirror = "-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
+const std::string kPlacedSame = "1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
+const std::string kPlacedMirror = "-1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
 const std::string kDouble = "2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1";
 const std::string kHalfTurn = "-1,0,0,2,0,-1,0,1,0,0,1,0,0,0,0,1";
 
@@ -73,8 +73,8 @@ std::string instance(const std::string& matrix, int vertex = 0) {
          R"(],"transformationMatrix":[)" + matrix + "]}";
 }
 
-std::string object(const std::string& id, const std::string& type, const std::string& geometry,
-                   const std::string& family = "") {
+std::string placed_object(const std::string& id, const std::string& type,
+                          const std::string& geometry, const std::string& family = "") {
   return '"' + id + R"(":{"type":")" + type + R"(",)" + family + R"("geometry":[)" + geometry +
          "]}";
 }
@@ -92,8 +92,8 @@ Document read(const std::string& text) {
   return *std::move(document);
 }
 
-std::vector<pipeline::InspectedFeature> stream(const std::string& text,
-                                               const validate::GroupOptions& groups = {}) {
+std::vector<pipeline::InspectedFeature> stream_placed(const std::string& text,
+                                                      const validate::GroupOptions& groups = {}) {
   formats::FeatureReader reader = formats::FeatureReader::of(read(text));
   pipeline::StreamOptions options;
   options.groups = groups;
@@ -120,25 +120,26 @@ std::vector<int> codes(const pipeline::InspectedFeature& feature) {
 using Codes = std::vector<int>;
 
 Codes composite_codes(const std::string& form, const std::string& matrix) {
-  return codes(stream(city(form, object("o", "CityFurniture", instance(matrix)))).at(0));
+  return codes(
+      stream_placed(city(form, placed_object("o", "CityFurniture", instance(matrix)))).at(0));
 }
 
 }  // namespace
 
 TEST_CASE("members of a composite template are compared where an instance has them") {
-  for (const std::string& matrix : {kSame, kDouble, kHalfTurn}) {
+  for (const std::string& matrix : {kPlacedSame, kDouble, kHalfTurn}) {
     CHECK(composite_codes(composite({cube(0), cube(2)}), matrix).empty());
     CHECK(composite_codes(composite({cube(0), cube(1)}), matrix) == Codes{501});
     CHECK(composite_codes(composite({cube(0), cube(0)}), matrix) == Codes{502});
     CHECK(composite_codes(composite({cube(0), cube(3)}), matrix) == Codes{503});
   }
-  CHECK(composite_codes(composite({cube(0, true), cube(1, true)}), kMirror) == Codes{501});
-  CHECK(composite_codes(composite({cube(0, true), cube(2, true)}), kMirror).empty());
+  CHECK(composite_codes(composite({cube(0, true), cube(1, true)}), kPlacedMirror) == Codes{501});
+  CHECK(composite_codes(composite({cube(0, true), cube(2, true)}), kPlacedMirror).empty());
 }
 
 TEST_CASE("a group of an instance states its instance, and the depth of the overlap in place") {
-  const auto features = stream(
-      city(composite({cube(0), cube(1)}), object("o", "CityFurniture", instance(kDouble, 24))));
+  const auto features = stream_placed(city(
+      composite({cube(0), cube(1)}), placed_object("o", "CityFurniture", instance(kDouble, 24))));
   REQUIRE(features.size() == 2);
   const pipeline::InspectedFeature& feature = features[0];
   CHECK(feature.verdict() == Verdict::invalid);
@@ -165,14 +166,15 @@ TEST_CASE("a tolerance of overlaps holds for instances in metres") {
   options.overlap_metres = 0.75;
   const std::string form = composite({cube(0), cube(1)});
   const auto said = [&](const std::string& matrix) {
-    return codes(stream(city(form, object("o", "Bench", instance(matrix))), options).at(0));
+    return codes(
+        stream_placed(city(form, placed_object("o", "Bench", instance(matrix))), options).at(0));
   };
-  CHECK(said(kSame).empty());
+  CHECK(said(kPlacedSame).empty());
   CHECK(said(kDouble) == Codes{501});
 }
 
 TEST_CASE("a composite template without instances is judged as it is") {
-  const auto features = stream(city(composite({cube(0), cube(1)}), ""));
+  const auto features = stream_placed(city(composite({cube(0), cube(1)}), ""));
   REQUIRE(features.size() == 1);
   CHECK(features[0].feature.id == "geometry-templates");
   CHECK(codes(features[0]) == Codes{501});
@@ -182,31 +184,34 @@ TEST_CASE("instances are compared with the solids of their building") {
   const std::string parts = R"("children":["p"],)";
   const std::string part_of = R"("parents":["b"],)";
   const auto said = [&](const std::string& own, const std::string& part) {
-    return codes(stream(city(R"({"type":"Solid","lod":"2","boundaries":)" + cube(0) + "}",
-                             object("b", "Building", own, parts) + "," +
-                                 object("p", "BuildingPart", part, part_of)))
+    return codes(stream_placed(city(R"({"type":"Solid","lod":"2","boundaries":)" + cube(0) + "}",
+                                    placed_object("b", "Building", own, parts) + "," +
+                                        placed_object("p", "BuildingPart", part, part_of)))
                      .at(0));
   };
   const auto solid = [](int k) {
     return R"({"type":"Solid","lod":"2","boundaries":)" + cube(k) + "}";
   };
-  CHECK(said(solid(0), instance(kSame)) == Codes{601});
-  CHECK(said(solid(0), instance(kSame, 8)) == Codes{601});  // the instance begins at x = 0.5
-  CHECK(said(solid(0), instance(kSame, 16)).empty());  // the instance begins at x = 1: a party wall
-  CHECK(said(instance(kSame), instance(kSame)) == Codes{601});
-  CHECK(said(instance(kSame), instance(kHalfTurn)).empty());  // the instance goes from x = 2 to 1
-  CHECK(said(instance(kSame), instance(kDouble, 8)) == Codes{601});
+  CHECK(said(solid(0), instance(kPlacedSame)) == Codes{601});
+  CHECK(said(solid(0), instance(kPlacedSame, 8)) == Codes{601});  // the instance begins at x = 0.5
+  CHECK(said(solid(0), instance(kPlacedSame, 16))
+            .empty());  // the instance begins at x = 1: a party wall
+  CHECK(said(instance(kPlacedSame), instance(kPlacedSame)) == Codes{601});
+  CHECK(said(instance(kPlacedSame), instance(kHalfTurn))
+            .empty());  // the instance goes from x = 2 to 1
+  CHECK(said(instance(kPlacedSame), instance(kDouble, 8)) == Codes{601});
   // Solids of different levels of detail are not compared.
-  CHECK(
-      said(R"({"type":"Solid","lod":"1","boundaries":)" + cube(0) + "}", instance(kSame)).empty());
+  CHECK(said(R"({"type":"Solid","lod":"1","boundaries":)" + cube(0) + "}", instance(kPlacedSame))
+            .empty());
 }
 
 TEST_CASE("a building's instances are its solids where they overlap, and only there") {
   const std::string form = R"({"type":"Solid","lod":"2","boundaries":)" + cube(0) + "}";
   const auto building = [&](int vertex) {
-    return stream(city(form, object("b", "Building", form, R"("children":["p"],)") + "," +
-                                 object("p", "BuildingPart", instance(kSame, vertex),
-                                        R"("parents":["b"],)")))
+    return stream_placed(
+               city(form, placed_object("b", "Building", form, R"("children":["p"],)") + "," +
+                              placed_object("p", "BuildingPart", instance(kPlacedSame, vertex),
+                                            R"("parents":["b"],)")))
         .at(0);
   };
   const pipeline::InspectedFeature apart = building(16);
@@ -234,8 +239,10 @@ TEST_CASE("walls that differ from a contact only by the digits of a rotation do 
   const std::string form = R"({"type":"Solid","lod":"2","boundaries":)" + cube(0) + "}";
   const auto said = [&](const std::string& matrix) {
     return codes(
-        stream(city(form, object("b", "Building", instance(turn), R"("children":["p"],)") + "," +
-                              object("p", "BuildingPart", instance(matrix), R"("parents":["b"],)")))
+        stream_placed(
+            city(form,
+                 placed_object("b", "Building", instance(turn), R"("children":["p"],)") + "," +
+                     placed_object("p", "BuildingPart", instance(matrix), R"("parents":["b"],)")))
             .at(0));
   };
   CHECK(said(shifted(sine, sine)).empty());
@@ -253,28 +260,30 @@ TEST_CASE("the depth of an overlap is that in place, whichever instance comes fi
     std::string objects;
     for (std::size_t i = 0; i < matrices.size(); ++i) {
       if (i > 0) objects += ",";
-      objects += object(std::to_string(i), "Bench", instance(matrices[i]));
+      objects += placed_object(std::to_string(i), "Bench", instance(matrices[i]));
     }
     std::vector<Codes> all;
-    for (const pipeline::InspectedFeature& feature : stream(city(form, objects), options)) {
+    for (const pipeline::InspectedFeature& feature : stream_placed(city(form, objects), options)) {
       all.push_back(codes(feature));
     }
     return all;
   };
-  CHECK(said({kSame, kDouble}) == std::vector<Codes>{{}, {501}, {}});
-  CHECK(said({kDouble, kSame}) == std::vector<Codes>{{501}, {}, {}});
-  CHECK(said({kSame, tilt}).at(1) == said({tilt, kSame}).at(0));
+  CHECK(said({kPlacedSame, kDouble}) == std::vector<Codes>{{}, {501}, {}});
+  CHECK(said({kDouble, kPlacedSame}) == std::vector<Codes>{{501}, {}, {}});
+  CHECK(said({kPlacedSame, tilt}).at(1) == said({tilt, kPlacedSame}).at(0));
 }
 
 TEST_CASE("features with instances that do not fit are refused") {
   const auto refused = pipeline::encode_document(
-      read(city(composite({cube(0), cube(1)}), object("o", "CityFurniture", instance(kSame)))),
+      read(city(composite({cube(0), cube(1)}),
+                placed_object("o", "CityFurniture", instance(kPlacedSame)))),
       nullptr, {});
   REQUIRE(refused);
   CHECK(refused->outcome.verdict == Verdict::invalid);
   CHECK(refused->document.features.empty());
   const auto accepted = pipeline::encode_document(
-      read(city(composite({cube(0), cube(2)}), object("o", "CityFurniture", instance(kSame)))),
+      read(city(composite({cube(0), cube(2)}),
+                placed_object("o", "CityFurniture", instance(kPlacedSame)))),
       nullptr, {});
   REQUIRE(accepted);
   CHECK(accepted->outcome.verdict == Verdict::valid);

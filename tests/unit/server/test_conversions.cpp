@@ -11,7 +11,7 @@ namespace {
 using samples::Json;
 
 /// Requests with any header fields.
-class Fixture : public samples::RoutesFixture {
+class ConversionRoutes : public samples::RoutesFixture {
  public:
   server::Response send_body(const std::string& target, std::string body,
                              std::vector<server::HeaderField> headers = {}) const {
@@ -25,7 +25,8 @@ std::string golden(const std::string& name) {
   return test::read_text(std::string(WATERTIGHT_SOURCES) + "/tests/golden/findings/" + name);
 }
 
-TEST_CASE_METHOD(Fixture, "an encoded document is decoded byte for byte, whatever its format") {
+TEST_CASE_METHOD(ConversionRoutes,
+                 "an encoded document is decoded byte for byte, whatever its format") {
   const std::string city = test::read_text(WATERTIGHT_SOURCES "/examples/delft.city.jsonl");
   for (const auto& [text, type] : {std::pair{city, "application/city+json-seq"},
                                    std::pair{golden("102.city.json"), "application/city+json"},
@@ -43,7 +44,8 @@ TEST_CASE_METHOD(Fixture, "an encoded document is decoded byte for byte, whateve
   }
 }
 
-TEST_CASE_METHOD(Fixture, "a GML document is stored, and its features are given out again") {
+TEST_CASE_METHOD(ConversionRoutes,
+                 "a GML document is stored, and its features are given out again") {
   const std::string text = golden("103.gml");
   const auto stored = post("/collections/town/items?invalid=keep", text, kGml);
   INFO(stored.body);
@@ -56,7 +58,8 @@ TEST_CASE_METHOD(Fixture, "a GML document is stored, and its features are given 
   CHECK(feature["geometry"]["type"] == "MultiPolygon");
 }
 
-TEST_CASE_METHOD(Fixture, "a document that is not valid is not encoded unless that is wanted") {
+TEST_CASE_METHOD(ConversionRoutes,
+                 "a document that is not valid is not encoded unless that is wanted") {
   const std::string text = golden("102.city.json");
   const auto refused = send_body("/encode", text);
   CHECK(refused.status == 422);
@@ -69,7 +72,8 @@ TEST_CASE_METHOD(Fixture, "a document that is not valid is not encoded unless th
   CHECK(send_body("/encode?planarity=-1", text).status == 400);
 }
 
-TEST_CASE_METHOD(Fixture, "a GML document becomes a city model, with notes of what has no place") {
+TEST_CASE_METHOD(ConversionRoutes,
+                 "a GML document becomes a city model, with notes of what has no place") {
   const auto converted = send_body("/convert", golden("103.gml"),
                                    {{"content-type", kGml}, {"accept", "application/city+json"}});
   REQUIRE(converted.status == 200);
@@ -78,7 +82,7 @@ TEST_CASE_METHOD(Fixture, "a GML document becomes a city model, with notes of wh
   CHECK(city["CityObjects"]["sample"]["geometry"][0]["type"] == "Solid");
 }
 
-TEST_CASE_METHOD(Fixture, "a document is converted to each format that is written") {
+TEST_CASE_METHOD(ConversionRoutes, "a document is converted to each format that is written") {
   const std::string text = golden("201.city.json");
   for (const char* to : {"cityjson", "cityjsonseq", "obj", "off", "wkt", "ewkb"}) {
     INFO(to);
@@ -93,7 +97,7 @@ TEST_CASE_METHOD(Fixture, "a document is converted to each format that is writte
   CHECK(send_body("/convert?surfaces=perhaps", text).status == 400);
 }
 
-TEST_CASE_METHOD(Fixture, "a body that is no Watertight file is not decoded") {
+TEST_CASE_METHOD(ConversionRoutes, "a body that is no Watertight file is not decoded") {
   CHECK(send_body("/decode", golden("102.city.json")).status == 415);
   const std::string text = golden("102.city.json");
   std::string file = send_body("/encode?invalid=keep", text).body;
@@ -103,7 +107,7 @@ TEST_CASE_METHOD(Fixture, "a body that is no Watertight file is not decoded") {
   CHECK(send_body("/decode", file, {{"accept", "image/png"}}).status == 406);
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(ConversionRoutes,
                  "a body of the type that curl gives to each is known by its first bytes") {
   const char* type = "application/x-www-form-urlencoded";
   CHECK(send_body("/validate", golden("103.gml"), {{"content-type", type}}).status == 200);

@@ -13,9 +13,9 @@ using samples::Json;
 using samples::problem_of;
 using samples::sequence;
 
-class Fixture : public samples::RoutesFixture {
+class EditRoutes : public samples::RoutesFixture {
  public:
-  Fixture() { REQUIRE(post("/collections/town/items", samples::kTwo).status == 201); }
+  EditRoutes() { REQUIRE(post("/collections/town/items", samples::kTwo).status == 201); }
   server::Response change(const std::string& method, const std::string& id, std::string body,
                           std::vector<server::HeaderField> headers = {},
                           const std::string& query = "") const {
@@ -30,7 +30,7 @@ class Fixture : public samples::RoutesFixture {
   }
 };
 
-TEST_CASE_METHOD(Fixture, "a document is put in the place of a feature, or makes one") {
+TEST_CASE_METHOD(EditRoutes, "a document is put in the place of a feature, or makes one") {
   const auto replaced = change("PUT", "a", sequence({feature("a")}));
   CHECK(replaced.status == 200);
   CHECK(*header_of(replaced, "ETag") == tag("a"));
@@ -43,7 +43,7 @@ TEST_CASE_METHOD(Fixture, "a document is put in the place of a feature, or makes
   CHECK(change("PUT", "b", feature("b")).status == 200);
 }
 
-TEST_CASE_METHOD(Fixture, "a document of other features is not put") {
+TEST_CASE_METHOD(EditRoutes, "a document of other features is not put") {
   for (const std::string& body : {sequence({feature("b")}), sequence({feature("a"), feature("b")}),
                                   sequence({}), std::string("{\"type\":")}) {
     const auto refused = change("PUT", "a", body);
@@ -54,7 +54,7 @@ TEST_CASE_METHOD(Fixture, "a document of other features is not put") {
   CHECK(change("PUT", "a", sequence({feature("a")}), {}, "?planarity=x").status == 400);
 }
 
-TEST_CASE_METHOD(Fixture, "a feature that is not valid is not put, and the old one stays") {
+TEST_CASE_METHOD(EditRoutes, "a feature that is not valid is not put, and the old one stays") {
   const std::string before = document("a");
   const std::string open = sequence({feature("a", samples::kOpenFacets)});
   const auto refused = change("PUT", "a", open);
@@ -66,7 +66,7 @@ TEST_CASE_METHOD(Fixture, "a feature that is not valid is not put, and the old o
   CHECK(document("a") != before);
 }
 
-TEST_CASE_METHOD(Fixture, "a patch changes attributes and nothing else") {
+TEST_CASE_METHOD(EditRoutes, "a patch changes attributes and nothing else") {
   const std::string before = document("a");
   const auto changed = change("PATCH", "a", R"({"properties":{"owner":"city","floors":3}})");
   CHECK(changed.status == 200);
@@ -81,7 +81,7 @@ TEST_CASE_METHOD(Fixture, "a patch changes attributes and nothing else") {
   CHECK(Json::parse(get("/collections/town/items/a?f=proof").body)["proven"] == true);
 }
 
-TEST_CASE_METHOD(Fixture,
+TEST_CASE_METHOD(EditRoutes,
                  "a patch of a feature that is not proven leaves it as unproven as it was") {
   REQUIRE(post("/collections/town/items?invalid=keep", samples::kOneOpen).status == 201);
   const std::string proof = get("/collections/town/items/open?f=proof").body;
@@ -89,7 +89,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(get("/collections/town/items/open?f=proof").body == proof);
 }
 
-TEST_CASE_METHOD(Fixture, "a patch that is not understood changes nothing") {
+TEST_CASE_METHOD(EditRoutes, "a patch that is not understood changes nothing") {
   const std::string before = tag("a");
   for (const char* body :
        {"", "[]", "{}", "{\"properties\":1}", "{\"properties\":{},\"geometry\":null}",
@@ -106,7 +106,7 @@ TEST_CASE_METHOD(Fixture, "a patch that is not understood changes nothing") {
   CHECK(tag("a") == before);
 }
 
-TEST_CASE_METHOD(Fixture, "changes keep their conditions") {
+TEST_CASE_METHOD(EditRoutes, "changes keep their conditions") {
   const std::string old = tag("a");
   const std::string patch = R"({"properties":{"n":1}})";
   CHECK(change("PATCH", "a", patch, {{"if-match", old}}).status == 200);
@@ -120,7 +120,7 @@ TEST_CASE_METHOD(Fixture, "changes keep their conditions") {
   CHECK(change("PUT", "a", sequence({feature("a")}), {{"if-match", tag("a")}}).status == 200);
 }
 
-TEST_CASE_METHOD(Fixture, "no route is brought down by JSON that is nested a million times") {
+TEST_CASE_METHOD(EditRoutes, "no route is brought down by JSON that is nested a million times") {
   constexpr std::size_t kLevels = 1'000'000;
   std::string objects;
   for (std::size_t i = 0; i < kLevels; ++i) objects += "{\"a\":";

@@ -14,9 +14,9 @@ using samples::header_of;
 using samples::Json;
 
 /// A service with the eleven broken buildings and two good ones.
-class Fixture : public samples::RoutesFixture {
+class ReportRoutes : public samples::RoutesFixture {
  public:
-  Fixture() {
+  ReportRoutes() {
     REQUIRE(post("/collections/town/items?invalid=keep",
                  test::read_text(WATERTIGHT_SOURCES "/examples/invalid.city.jsonl"))
                 .status == 201);
@@ -28,7 +28,7 @@ class Fixture : public samples::RoutesFixture {
   }
 };
 
-TEST_CASE_METHOD(Fixture, "the report of a collection is that of its export") {
+TEST_CASE_METHOD(ReportRoutes, "the report of a collection is that of its export") {
   Json of_store = report("");
   Json of_export = Json::parse(
       post("/validate", test::whole(get("/collections/town/export?f=cityjsonseq"))).body);
@@ -39,7 +39,8 @@ TEST_CASE_METHOD(Fixture, "the report of a collection is that of its export") {
   CHECK(of_store["features"].size() == 11);
 }
 
-TEST_CASE_METHOD(Fixture, "a report has all features, or those that are proven, or the others") {
+TEST_CASE_METHOD(ReportRoutes,
+                 "a report has all features, or those that are proven, or the others") {
   REQUIRE(post("/collections/mixed/items?invalid=keep", samples::kOneOpen).status == 201);
   const auto count = [&](const std::string& query) {
     const auto response = get("/collections/mixed/report" + query);
@@ -56,7 +57,8 @@ TEST_CASE_METHOD(Fixture, "a report has all features, or those that are proven, 
   CHECK(Json::parse(none.body)["verdict"] == "valid");
 }
 
-TEST_CASE_METHOD(Fixture, "stored features are judged under other tolerances without a change") {
+TEST_CASE_METHOD(ReportRoutes,
+                 "stored features are judged under other tolerances without a change") {
   const auto errors = [&](const std::string& query) {
     return report(query)["all_errors"].get<std::set<int>>();
   };
@@ -66,7 +68,7 @@ TEST_CASE_METHOD(Fixture, "stored features are judged under other tolerances wit
   CHECK(get("/collections/town/report?planarity=-1").status == 400);
 }
 
-TEST_CASE_METHOD(Fixture, "a report comes in five forms") {
+TEST_CASE_METHOD(ReportRoutes, "a report comes in five forms") {
   for (const auto& [form, type, start] :
        {std::tuple{"json", "application/json", "{"},
         std::tuple{"geojson", "application/geo+json", "{"},
@@ -88,7 +90,7 @@ TEST_CASE_METHOD(Fixture, "a report comes in five forms") {
   CHECK(get("/collections/nowhere/report").status == 404);
 }
 
-TEST_CASE_METHOD(Fixture, "a changed collection has another report") {
+TEST_CASE_METHOD(ReportRoutes, "a changed collection has another report") {
   const std::string etag = *header_of(get("/collections/town/report"), "ETag");
   REQUIRE(post("/collections/town/items", samples::sequence({samples::feature("a")})).status ==
           201);

@@ -22,7 +22,7 @@ StoredFeature feature_of(const std::string& collection, const std::string& id,
   return feature;
 }
 
-void put_one(SolidStore& store, const StoredFeature& feature) {
+void put_feature(SolidStore& store, const StoredFeature& feature) {
   const auto versions = store.put(std::span(&feature, 1));
   INFO((versions ? std::string() : to_string(versions.error())));
   REQUIRE(versions);
@@ -45,7 +45,7 @@ TEST_CASE("pages walk through all collections, each with its own counts") {
   const auto store = database.store();
   for (const char* id : {"b", "a", "Z", "a.1", "_"}) {
     for (int i = 0; i < (id == std::string("a") ? 3 : 1); ++i) {
-      put_one(*store, feature_of(id, std::to_string(i)));
+      put_feature(*store, feature_of(id, std::to_string(i)));
     }
   }
   const std::vector<std::string> expected{"Z", "_", "a", "a.1", "b"};
@@ -93,7 +93,7 @@ TEST_CASE("a collection is made before its first feature, with its CRS, policy a
   CHECK(database.store()->collections(10, "")->collections[0].rules == "planarity=0.02\n");
   CHECK(store->recount("town")->rules == "planarity=0.02\n");
   CHECK(store->list({"town", 10, {}, {}, 0, {}, {}})->features.empty());
-  put_one(*store, feature_of("town", "a"));
+  put_feature(*store, feature_of("town", "a"));
   const StoredFeature other = feature_of("town", "b", 28992);
   CHECK(store->put(std::span(&other, 1)).error().code == ErrorCode::conflict);
   REQUIRE(store->rename_collection("town", "city"));
@@ -115,13 +115,13 @@ TEST_CASE("features with the box of another one are found, in their own collecti
   for (const auto& feature :
        {at("town", "a", 0), at("town", "b", 0), at("town", "c", 5), at("other", "d", 5),
         at("town", "e", 0), at("town", "near", std::nextafter(5.0, 6.0))}) {
-    put_one(*store, feature);
+    put_feature(*store, feature);
   }
   StoredFeature without = feature_of("town", "x");
   without.box.reset();
-  put_one(*store, without);
+  put_feature(*store, without);
   without.id = "y";
-  put_one(*store, without);
+  put_feature(*store, without);
   const std::vector<std::string> all{"a", "b", "c", "d", "e", "near", "x", "y", "none"};
   const auto found = store->twins("town", all);
   REQUIRE(found);
@@ -142,7 +142,7 @@ TEST_CASE("a removed collection is gone with its features, its CRS and its heade
   std::vector<StoredFeature> features;
   for (int i = 0; i < 2500; ++i) features.push_back(feature_of("c", "f" + std::to_string(i)));
   REQUIRE(store->put(features));
-  put_one(*store, feature_of("other", "x"));
+  put_feature(*store, feature_of("other", "x"));
   REQUIRE(store->remove_collection("c", {}));
   CHECK(store->collection("c").error().code == ErrorCode::not_found);
   CHECK(store->get("c", "f1").error().code == ErrorCode::not_found);
@@ -155,7 +155,7 @@ TEST_CASE("a removed collection is gone with its features, its CRS and its heade
   CHECK(store->remove_collection("c", {}).error().code == ErrorCode::not_found);
   StoredFeature elsewhere = feature_of("c", "f1", 28992);
   elsewhere.header = "{\"another\":1}";
-  put_one(*store, elsewhere);
+  put_feature(*store, elsewhere);
   const auto collection = store->collection("c");
   REQUIRE(collection);
   CHECK(collection->srid == 28992);
@@ -176,12 +176,12 @@ TEST_CASE("a removal that is cancelled is whole all the same, and later writes d
   CHECK(store->collection("c").error().code == ErrorCode::not_found);
   CHECK(rows_of(database, "feature") == "2500");
   // The new collection of this name has none of the old rows.
-  put_one(*store, feature_of("c", "f3000", 28992));
+  put_feature(*store, feature_of("c", "f3000", 28992));
   CHECK(store->collection("c")->features == 1);
   CHECK(store->list({"c", 10, "", {}})->features.size() == 1);
   for (int i = 0; i < 4; ++i) {
     const auto again = database.store();  // a store deletes some of them after its first write
-    put_one(*again, feature_of("c", "f3000", 28992));
+    put_feature(*again, feature_of("c", "f3000", 28992));
   }
   CHECK(rows_of(database, "feature") == "1");
   CHECK(rows_of(database, "collection") == "1");
@@ -191,8 +191,8 @@ TEST_CASE("a removal that is cancelled is whole all the same, and later writes d
 TEST_CASE("a renamed collection is the same under its new id") {
   const Database database;
   const auto store = database.store();
-  put_one(*store, feature_of("a", "x"));
-  put_one(*store, feature_of("b", "y"));
+  put_feature(*store, feature_of("a", "x"));
+  put_feature(*store, feature_of("b", "y"));
   CHECK(store->rename_collection("none", "c").error().code == ErrorCode::not_found);
   CHECK(store->rename_collection("a", "b").error().code == ErrorCode::conflict);
   CHECK(store->rename_collection("a", "no/ne").error().code == ErrorCode::invalid_argument);
@@ -204,8 +204,8 @@ TEST_CASE("a renamed collection is the same under its new id") {
   CHECK(store->get("c", "x")->solids.size() == 2);
   CHECK(ids_of(*store->collections(10, "")) == std::vector<std::string>{"b", "c"});
   // The old id is free, and names another collection now.
-  put_one(*store, feature_of("a", "z", 28992));
-  put_one(*store, feature_of("c", "w"));
+  put_feature(*store, feature_of("a", "z", 28992));
+  put_feature(*store, feature_of("c", "w"));
   CHECK(store->collection("a")->features == 1);
   CHECK(store->collection("c")->features == 2);
   CHECK(store->get("a", "x").error().code == ErrorCode::not_found);

@@ -15,8 +15,8 @@ using Kind = WriteCondition::Kind;
 
 namespace {
 
-std::uint64_t put_one(SolidStore& store, const StoredFeature& feature,
-                      const WriteCondition& condition = {}) {
+std::uint64_t put_on_condition(SolidStore& store, const StoredFeature& feature,
+                               const WriteCondition& condition = {}) {
   const auto versions = store.put(std::span(&feature, 1), condition);
   INFO((versions ? std::string() : to_string(versions.error())));
   REQUIRE(versions);
@@ -43,7 +43,7 @@ TEST_CASE("the version of a feature is that of its last put") {
   CHECK(store->version("buildings", "a").error().code == ErrorCode::not_found);
   CHECK(store->version("no/ne", "a").error().code == ErrorCode::not_found);
   for (int i = 0; i < 3; ++i) {
-    const std::uint64_t version = put_one(*store, sample_feature("a"));
+    const std::uint64_t version = put_on_condition(*store, sample_feature("a"));
     CHECK(*store->version("buildings", "a") == version);
   }
   CHECK(store->version("buildings", "b").error().code == ErrorCode::not_found);
@@ -64,12 +64,12 @@ TEST_CASE("a put happens only if its condition holds for each of its features") 
   refused({Kind::present, {}}, "a", "does not exist");
   refused({Kind::versions, {7}}, "a", "does not exist");
   CHECK(store->collection("buildings").error().code == ErrorCode::not_found);
-  const std::uint64_t a = put_one(*store, both[0], {Kind::absent, {}});
+  const std::uint64_t a = put_on_condition(*store, both[0], {Kind::absent, {}});
   refused({Kind::absent, {}}, "a", "version " + std::to_string(a));
   refused({Kind::present, {}}, "b", "does not exist");
   refused({Kind::versions, {a}}, "b", "does not exist");
   CHECK(*store->version("buildings", "a") == a);
-  const std::uint64_t b = put_one(*store, both[1]);
+  const std::uint64_t b = put_on_condition(*store, both[1]);
   refused({Kind::versions, {a}}, "b", "version " + std::to_string(b));
   refused({Kind::versions, {}}, "a", "version " + std::to_string(a));
   CHECK(*store->version("buildings", "a") == a);
@@ -83,8 +83,8 @@ TEST_CASE("a put happens only if its condition holds for each of its features") 
 TEST_CASE("a remove happens only if its condition holds") {
   const Database database;
   const auto store = database.store();
-  const std::uint64_t first = put_one(*store, sample_feature("a"));
-  const std::uint64_t second = put_one(*store, sample_feature("a"));
+  const std::uint64_t first = put_on_condition(*store, sample_feature("a"));
+  const std::uint64_t second = put_on_condition(*store, sample_feature("a"));
   const Status stale = store->remove("buildings", "a", {Kind::versions, {first}});
   REQUIRE(!stale);
   check_refused(stale.error(), "a", "version " + std::to_string(second));
@@ -96,7 +96,7 @@ TEST_CASE("a remove happens only if its condition holds") {
 TEST_CASE("of writers that replace one version exactly one succeeds") {
   const Database database;
   const auto store = database.store(4);
-  std::uint64_t version = put_one(*store, sample_feature("a"));
+  std::uint64_t version = put_on_condition(*store, sample_feature("a"));
   for (int round = 0; round < 25; ++round) {
     std::atomic<int> stored{0};
     std::atomic<int> refused{0};
@@ -120,7 +120,7 @@ TEST_CASE("of writers that replace one version exactly one succeeds") {
     CHECK(stored == 1);
     CHECK(refused == 3);
     const auto now = store->version("buildings", "a");
-    version = now ? *now : put_one(*store, sample_feature("a"));
+    version = now ? *now : put_on_condition(*store, sample_feature("a"));
   }
 }
 

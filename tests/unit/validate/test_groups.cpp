@@ -64,7 +64,7 @@ std::vector<int> composite_codes(const Shell& a, const Shell& b) {
   return composite_codes(Group().add(a).add(b));
 }
 
-using Codes = std::vector<int>;
+using CodeList = std::vector<int>;
 
 /// An upright prism over a polygon that turns counter-clockwise.
 Shell prism(const Ring& plan, double low, double high) {
@@ -103,9 +103,9 @@ TEST_CASE("a member in whose facet rings touch inside an edge is compared like o
   Ring& front = pitted[2][0];
   front.insert(std::find(front.begin(), front.end(), Point{8, 0, 8}) + 1, v);
   CHECK(composite_codes(pitted, plug).empty());
-  CHECK(composite_codes(pitted, cube(8)) == Codes{501});
+  CHECK(composite_codes(pitted, cube(8)) == CodeList{501});
   CHECK(composite_codes(pitted, box({0, 0, 8}, {8, 8, 9})).empty());
-  CHECK(composite_codes(pitted, pitted) == Codes{502});
+  CHECK(composite_codes(pitted, pitted) == CodeList{502});
 }
 
 TEST_CASE("members that share a facet make a composite solid") {
@@ -141,57 +141,57 @@ TEST_CASE("crossing members overlap, and the finding says where and how deep") {
 }
 
 TEST_CASE("contact in an edge or a vertex alone does not connect members") {
-  CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({4, 4, 0}, {8, 8, 4})) == Codes{503});
-  CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({4, 4, 4}, {8, 8, 8})) == Codes{503});
-  CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({5, 0, 0}, {8, 4, 4})) == Codes{503});
+  CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({4, 4, 0}, {8, 8, 4})) == CodeList{503});
+  CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({4, 4, 4}, {8, 8, 8})) == CodeList{503});
+  CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}), box({5, 0, 0}, {8, 4, 4})) == CodeList{503});
   // The tip of a tetrahedron touches a facet, and an edge lies along a facet.
   CHECK(composite_codes(box({0, 0, 0}, {4, 4, 4}),
                         inside_out(Shell{{{{2, 2, 4}, {1, 1, 6}, {3, 1, 6}}},
                                          {{{2, 2, 4}, {3, 1, 6}, {2, 3, 6}}},
                                          {{{2, 2, 4}, {2, 3, 6}, {1, 1, 6}}},
-                                         {{{1, 1, 6}, {2, 3, 6}, {3, 1, 6}}}})) == Codes{503});
+                                         {{{1, 1, 6}, {2, 3, 6}, {3, 1, 6}}}})) == CodeList{503});
 }
 
 TEST_CASE("a member inside another overlaps it, a member inside its cavity does not") {
-  CHECK(composite_codes(cube(10), box({2, 2, 2}, {4, 4, 4})) == Codes{501});
-  CHECK(composite_codes(box({2, 2, 2}, {4, 4, 4}), cube(10)) == Codes{501});
+  CHECK(composite_codes(cube(10), box({2, 2, 2}, {4, 4, 4})) == CodeList{501});
+  CHECK(composite_codes(box({2, 2, 2}, {4, 4, 4}), cube(10)) == CodeList{501});
   const std::vector<Shell> hollow{cube(10), inside_out(box({2, 2, 2}, {8, 8, 8}))};
-  CHECK(composite_codes(Group().add(hollow).add(box({4, 4, 4}, {6, 6, 6}))) == Codes{503});
+  CHECK(composite_codes(Group().add(hollow).add(box({4, 4, 4}, {6, 6, 6}))) == CodeList{503});
   CHECK(composite_codes(Group().add(hollow).add(box({2, 2, 2}, {8, 8, 8}))).empty());
-  CHECK(composite_codes(Group().add(hollow).add(box({1, 2, 2}, {8, 8, 8}))) == Codes{501});
-  CHECK(composite_codes(Group().add(hollow).add(cube(10))) == Codes{501});
+  CHECK(composite_codes(Group().add(hollow).add(box({1, 2, 2}, {8, 8, 8}))) == CodeList{501});
+  CHECK(composite_codes(Group().add(hollow).add(cube(10))) == CodeList{501});
 }
 
 TEST_CASE("solids whose boundaries touch only and whose interiors meet overlap") {
   // The members are: a box flush inside a face; a box with the same base but another height; a plug
   // that fills a notch exactly.
-  CHECK(composite_codes(cube(10), box({0, 2, 2}, {5, 5, 5})) == Codes{501});
-  CHECK(composite_codes(cube(10), box({0, 0, 0}, {10, 10, 4})) == Codes{501});
+  CHECK(composite_codes(cube(10), box({0, 2, 2}, {5, 5, 5})) == CodeList{501});
+  CHECK(composite_codes(cube(10), box({0, 0, 0}, {10, 10, 4})) == CodeList{501});
   CHECK(composite_codes(u_shape(), box({2, 2, 0}, {4, 6, 4})).empty());
-  CHECK(composite_codes(u_shape(), box({2, 1, 0}, {4, 6, 4})) == Codes{501});
+  CHECK(composite_codes(u_shape(), box({2, 1, 0}, {4, 6, 4})) == CodeList{501});
   // The second member is the hull of the first: all vertices of its facets lie on the first
   // boundary.
-  CHECK(composite_codes(u_shape(), box({0, 0, 0}, {6, 6, 4})) == Codes{501});
+  CHECK(composite_codes(u_shape(), box({0, 0, 0}, {6, 6, 4})) == CodeList{501});
   // The second member is a tetrahedron with all four corners on edges of the cube.
   CHECK(composite_codes(cube(4), Shell{{{{0, 0, 0}, {4, 4, 0}, {4, 0, 4}}},
                                        {{{0, 0, 0}, {0, 4, 4}, {4, 4, 0}}},
                                        {{{0, 0, 0}, {4, 0, 4}, {0, 4, 4}}},
-                                       {{{4, 4, 0}, {0, 4, 4}, {4, 0, 4}}}}) == Codes{501});
+                                       {{{4, 4, 0}, {0, 4, 4}, {4, 0, 4}}}}) == CodeList{501});
 }
 
 TEST_CASE("equal members are duplicates, however their facets are divided") {
-  CHECK(composite_codes(cube(4), cube(4)) == Codes{502});
+  CHECK(composite_codes(cube(4), cube(4)) == CodeList{502});
   Shell divided = cube(4);
   divided.erase(divided.begin() + 1);  // the top is divided in two
   divided.push_back({{{0, 0, 4}, {4, 0, 4}, {4, 4, 4}}});
   divided.push_back({{{0, 0, 4}, {4, 4, 4}, {0, 4, 4}}});
-  CHECK(composite_codes(cube(4), divided) == Codes{502});
+  CHECK(composite_codes(cube(4), divided) == CodeList{502});
   const std::vector<Shell> hollow{cube(10), inside_out(box({2, 2, 2}, {8, 8, 8}))};
-  CHECK(composite_codes(Group().add(hollow).add(hollow)) == Codes{502});
+  CHECK(composite_codes(Group().add(hollow).add(hollow)) == CodeList{502});
   // The members have equal boxes and volumes, but different points.
   const std::vector<Shell> shifted{cube(10), inside_out(box({1, 2, 2}, {7, 8, 8}))};
-  CHECK(composite_codes(Group().add(hollow).add(shifted)) == Codes{501});
-  CHECK(composite_codes(Group().add(cube(4)).add(cube(4)).add(cube(4))) == Codes{502, 502, 502});
+  CHECK(composite_codes(Group().add(hollow).add(shifted)) == CodeList{501});
+  CHECK(composite_codes(Group().add(cube(4)).add(cube(4)).add(cube(4))) == CodeList{502, 502, 502});
 }
 
 TEST_CASE("building parts may touch, be apart and fill each other's cavities, but not overlap") {
@@ -363,7 +363,7 @@ TEST_CASE("the comparison does not depend on the order of members") {
       positive += length > 0 ? 1 : 0;
       zero += length == 0 ? 1 : 0;
     }
-    Codes expected;
+    CodeList expected;
     if (a == c && b == d) {
       expected = {502};
     } else if (positive == 3) {

@@ -83,19 +83,20 @@ TEST_CASE("a finding reads as one line") {
 }
 
 TEST_CASE("first_level stops per facet, then per shell, then at the solid") {
-  using Codes = std::vector<int>;
+  using CodeList = std::vector<int>;
   CHECK(validate::first_level_codes({}).empty());
-  CHECK(validate::first_level_codes({finding_at(306, 0, 1), finding_at(203, 0, 2)}) == Codes{203});
+  CHECK(validate::first_level_codes({finding_at(306, 0, 1), finding_at(203, 0, 2)}) ==
+        CodeList{203});
   CHECK(validate::first_level_codes({finding_at(101, 0, 1), finding_at(102, 0, 1),
-                                     finding_at(203, 0, 2)}) == Codes{101, 203});
+                                     finding_at(203, 0, 2)}) == CodeList{101, 203});
   CHECK(validate::first_level_codes({finding_at(204, 0, 1), finding_at(302, 0, kNone)}) ==
-        Codes{204});
-  CHECK(validate::first_level_codes(
-            {finding_at(302, 0, 1), finding_at(303, 0, 1), finding_at(306, 0, 2)}) == Codes{303});
+        CodeList{204});
+  CHECK(validate::first_level_codes({finding_at(302, 0, 1), finding_at(303, 0, 1),
+                                     finding_at(306, 0, 2)}) == CodeList{303});
   CHECK(validate::first_level_codes({finding_at(302, 0, 1), finding_at(306, 0, 2),
-                                     finding_at(306, 1, 9)}) == Codes{302, 306});
+                                     finding_at(306, 1, 9)}) == CodeList{302, 306});
   CHECK(validate::first_level_codes({finding_at(401, 0, 1), finding_at(403, 1, 2)}) ==
-        Codes{401, 403});
+        CodeList{401, 403});
   Finding warning = finding_at(801, kNone, kNone);
   warning.severity = Severity::warning;
   CHECK(validate::first_level_codes({warning}).empty());

@@ -7,7 +7,7 @@ if(WATERTIGHT_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${WATERTIGHT_CCACHE}")
 endif()
 
-# With CMAKE_UNITY_BUILD (the checked build has it) a compiler reads so many files of a folder as one.
+# With CMAKE_UNITY_BUILD (the gate has it) a compiler reads so many files of a folder as one.
 # A name that two of them give to different things is an error there.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
 

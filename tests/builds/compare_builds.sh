@@ -33,8 +33,8 @@ print_fingerprint() {
   fi
 }
 
-# build NAME BUILD_DIRECTORY CMAKE_OPTION...: configures and builds the program. All builds but the
-# release build compile several files of a folder as one, which takes a third of the time.
+# build NAME BUILD_DIRECTORY CMAKE_OPTION...: configures and builds the program. A compiler
+# reads several files of a folder as one, which takes a third of the time.
 build() {
   name=$1
   directory=$2

@@ -46,7 +46,7 @@ if [ -n "$cache" ]; then
 fi
 for target in service postgres; do
   echo "building the image watertight-$target"
-  podman build --network=host "${volumes[@]}" --build-arg "WATERTIGHT_WERROR=${WATERTIGHT_WERROR:-OFF}" --file docker/Dockerfile --target "$target" \
+  podman build --network=host "${volumes[@]}" --build-arg "CMAKE_OPTIONS=${WATERTIGHT_CMAKE_OPTIONS:-}" --file docker/Dockerfile --target "$target" \
     --tag "localhost/watertight-$target:test" . >"$folder/build.log" 2>&1 ||
     { tail -60 "$folder/build.log"; exit 1; }
 done

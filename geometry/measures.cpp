@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Volumes are summed exactly and rounded once: in 128-bit integers on lattices whose coordinates
-// allow it, in integers of any length elsewhere.
+// allow it, in integers of any length elsewhere. mass/area.h has the areas.
 #include "geometry/measures.h"
 
 #include <gmpxx.h>
@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "geometry/lattice/grid_number.h"
+#include "geometry/mass/area.h"
 #include "geometry/predicates/exact_quotient.h"
-#include "geometry/vector3.h"
 
 namespace watertight::geometry {
 namespace {
@@ -148,40 +148,6 @@ double world_volume(const ExactVolume& six_volume, const Lattice& lattice) {
   return nearest_quotient(std::move(numerator), denominator, exponent);
 }
 
-/// A sum that also adds up its rounding errors (Neumaier 1974): accurate for any order of terms.
-class CompensatedSum {
- public:
-  void add(double term) {
-    const double sum = sum_ + term;
-    error_ += std::abs(sum_) >= std::abs(term) ? (sum_ - sum) + term : (term - sum) + sum_;
-    sum_ = sum;
-  }
-  double value() const { return sum_ + error_; }
-
- private:
-  double sum_ = 0;
-  double error_ = 0;
-};
-
-double world_area(const Solid& solid, std::span<const Triangle> triangles) {
-  const std::array scale{solid.lattice().scale(0), solid.lattice().scale(1),
-                         solid.lattice().scale(2)};
-  CompensatedSum area;
-  for (const auto& [a, b, c] : triangles) {
-    std::array<double, 3> u{};
-    std::array<double, 3> v{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto at = static_cast<std::size_t>(axis);
-      const double origin = solid.vertices()[a][axis];
-      u[at] = (solid.vertices()[b][axis] - origin) * scale[at];
-      v[at] = (solid.vertices()[c][axis] - origin) * scale[at];
-    }
-    const Vector3 normal = cross(u, v);
-    area.add(std::hypot(normal[0], normal[1], normal[2]) / 2);
-  }
-  return area.value();
-}
-
 /// The number of vertices of a shell, less the number of edges, plus the number of facets. Each
 /// interior ring subtracts one more: a cut from the ring to the exterior ring would add an edge.
 std::int64_t euler_characteristic(const Solid& solid, Index shell) {
@@ -222,7 +188,7 @@ double six_volume(std::span<const Point> vertices, std::span<const Triangle> tri
 Measures measure(const Solid& solid, std::span<const Triangle> triangles) {
   Measures measures;
   measures.volume = world_volume(exact_six_volume(solid.vertices(), triangles), solid.lattice());
-  measures.area = world_area(solid, triangles);
+  measures.area = area_of(solid, triangles);
   if (solid.vertex_count() > 0) {
     const Box box = solid.box();
     measures.box_min = solid.lattice().world(box.min);

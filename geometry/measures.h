@@ -14,7 +14,7 @@ namespace watertight::geometry {
 
 struct Measures {
   double volume = 0;  // the signed volume in world units cubed: the exact value rounded once
-  double area = 0;    // the area of all facets in world units squared: a rounded sum
+  double area = 0;    // the area of all facets in world units squared: the exact value rounded once
   std::array<double, 3> box_min{};
   std::array<double, 3> box_max{};
   std::int64_t genus = 0;  // the sum over all shells of (2 - Euler characteristic) / 2

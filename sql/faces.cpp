@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "geometry/fitted_plane.h"
+#include "geometry/mass/area.h"
 #include "geometry/vector3.h"
 #include "tessellate/facets.h"
 
@@ -84,15 +85,14 @@ std::vector<wt_face> faces_of(const Solid& solid) {
     const geometry::IndexRange range = solid.facets_of(shell);
     for (Index facet = range.begin; facet < range.end; ++facet) {
       const Index first = solid.ring(solid.rings_of(facet).begin).front();
-      const FacetSums sums = sums_of(
-          facets.divided_solid(solid),
-          triangles.subspan(facets.first[facet], facets.first[facet + 1] - facets.first[facet]),
-          first);
+      const auto parts =
+          triangles.subspan(facets.first[facet], facets.first[facet + 1] - facets.first[facet]);
+      const FacetSums sums = sums_of(facets.divided_solid(solid), parts, first);
       wt_face& face = faces.emplace_back();
       face.shell = shell;
       face.facet = facet;
       face.rings = solid.rings_of(facet).size();
-      face.area = sums.area;
+      face.area = geometry::area_of(facets.divided_solid(solid), parts);
       set_direction(sums.normal, face);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         face.centroid[axis] = solid.world(first)[axis] + sums.centre[axis] / sums.area;

@@ -3,12 +3,13 @@
 """Compares measures of SQL with those of exact fractions: exact_measures.py < ROWS
 
 A row of tab-separated columns is a solid: hexadecimal EWKB, the kind of its lattice, then as SQL gave them the volume,
-the centre of mass as {x,y,z}, a height and the volume below it. Coordinates count as the shortest decimals of their
+the area, the centre of mass as {x,y,z}, a height and the volume below it. Coordinates count as the shortest decimals of their
 doubles on a decimal lattice, and as the doubles on others. A solid is
 compared if each of its facets lies in a plane exactly (else the triangles of a facet decide, which are not known
 here) and has one ring. Volumes come from fans of triangles; the part below a height from prisms under those, cut by the
-height one by one. Prints the number of solids; exit code 1 after a difference.
+height one by one. The area is a sum of square roots, each cut off after 600 binary digits. Prints the number of solids; exit code 1 after a difference.
 """
+import math
 import struct
 import sys
 from fractions import Fraction
@@ -99,22 +100,40 @@ def measures(rings, height):
     return volume, centre, below
 
 
+def area(rings):
+    """Half the sum of the lengths of the rings' normals."""
+    rational, digits = Fraction(0), 0
+    for ring in rings:
+        normal = (Fraction(0),) * 3
+        for i in range(2, len(ring)):
+            part = cross(minus(ring[i - 1], ring[0]), minus(ring[i], ring[0]))
+            normal = tuple(a + b for a, b in zip(normal, part))
+        square = dot(normal, normal)
+        root = Fraction(math.isqrt(square.numerator), math.isqrt(square.denominator))
+        if root * root == square:
+            rational += root
+        else:
+            digits += math.isqrt((square.numerator << 1200) // square.denominator)
+    return (rational + Fraction(digits, 1 << 600)) / 2
+
+
 def main():
     count = left_out = wrong = 0
     for line in sys.stdin:
-        ewkb, lattice, volume, centre, height, below = line.rstrip("\n").split("\t")
+        ewkb, lattice, volume, surface, centre, height, below = line.rstrip("\n").split("\t")
         facets = facets_of(bytes.fromhex(ewkb), lattice)
         if facets is None or any(len(facet) > 1 or not is_flat(facet[0]) for facet in facets):
             left_out += 1
             continue
         count += 1
-        exact = measures([facet[0] for facet in facets], Fraction(height))
-        wanted = [float(exact[0]), *map(float, exact[1]), float(exact[2])]
-        got = [float(volume), *map(float, centre.strip("{}").split(",")), float(below)]
+        rings = [facet[0] for facet in facets]
+        exact = measures(rings, Fraction(height))
+        wanted = [float(exact[0]), float(area(rings)), *map(float, exact[1]), float(exact[2])]
+        got = [float(volume), float(surface), *map(float, centre.strip("{}").split(",")), float(below)]
         if wanted != got:
             wrong += 1
             print(f"{ewkb[:60]}: {got} instead of {wanted}")
-    print(f"{count} solids have the volumes and centres of exact fractions, {left_out} are not flat, {wrong} differ")
+    print(f"{count} solids have the volumes, areas and centres of exact fractions, {left_out} are not flat, {wrong} differ")
     return 1 if wrong or count == 0 else 0
 
 

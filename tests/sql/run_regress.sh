@@ -178,12 +178,34 @@ if [ -x "$build/bin/encode_documents" ]; then
     UNION ALL SELECT 'another golden', name FROM goldens g LEFT JOIN documents d USING (name)
       WHERE d.ewkb IS DISTINCT FROM wt_decode(g.blob)")
   [ -z "$different" ] || { echo "SQL and library differ:"; echo "$different"; exit 1; }
-  query -F"$(printf '\t')" -c "
-    SELECT encode(wt_as_ewkb(shape), 'hex'), wt_solid_info(shape)->'lattice'->>'kind', wt_volume(shape), wt_centroid(shape), height,
-      wt_volume_below(shape, height)
-    FROM (SELECT shape, round((0.3 * wt_bound(wt_bbox(shape), 6) + 0.7 * wt_bound(wt_bbox(shape), 3))::numeric, 4)::float8 AS height
-          FROM (SELECT wt_solid(blob) AS shape FROM documents WHERE blob IS NOT NULL) AS solids) AS cut" |
-    python3 "$source/tests/sql/exact_measures.py"
+  # Measures of these solids, and of 10,000 random tetrahedra, against exact fractions.
+  measured() {
+    query -F"$(printf '\t')" -c "
+      SELECT encode(wt_as_ewkb(shape), 'hex'), wt_solid_info(shape)->'lattice'->>'kind', wt_volume(shape), wt_area(shape),
+        wt_centroid(shape), height, wt_volume_below(shape, height)
+      FROM (SELECT shape, round((0.3 * wt_bound(wt_bbox(shape), 6) + 0.7 * wt_bound(wt_bbox(shape), 3))::numeric, 4)::float8 AS height
+            FROM $1 AS solids) AS cut" |
+      python3 "$source/tests/sql/exact_measures.py"
+  }
+  measured "(SELECT wt_solid(blob) AS shape FROM documents WHERE blob IS NOT NULL)"
+  query -c "SELECT setseed(0.5)" -c "
+    CREATE TABLE corners AS
+    SELECT n, array_agg(format('%s %s %s', round((1e5 * random())::numeric, n % 8), round((10 ^ (n % 7) * random())::numeric, n % 8),
+      round((1e2 * random())::numeric, 3)) ORDER BY i) AS p
+    FROM generate_series(1, 10000) AS n, generate_series(1, 4) AS i GROUP BY n"
+  # One of two orders of the corners is right, and some tetrahedra are flat.
+  query -c "
+    CREATE FUNCTION solid_or_null(wkt text) RETURNS solid LANGUAGE plpgsql AS
+    \$\$ BEGIN RETURN wkt::solid; EXCEPTION WHEN OTHERS THEN RETURN NULL; END \$\$"
+  query -c "
+    CREATE TABLE tetrahedra AS
+    SELECT coalesce(solid_or_null(one), solid_or_null(other)) AS shape
+    FROM corners, LATERAL (SELECT
+      format('POLYHEDRALSURFACE Z (((%1\$s,%3\$s,%2\$s,%1\$s)),((%1\$s,%2\$s,%4\$s,%1\$s)),((%2\$s,%3\$s,%4\$s,%2\$s)),((%1\$s,%4\$s,%3\$s,%1\$s)))',
+             p[1], p[2], p[3], p[4]) AS one,
+      format('POLYHEDRALSURFACE Z (((%1\$s,%3\$s,%2\$s,%1\$s)),((%1\$s,%2\$s,%4\$s,%1\$s)),((%2\$s,%3\$s,%4\$s,%2\$s)),((%1\$s,%4\$s,%3\$s,%1\$s)))',
+             p[2], p[1], p[3], p[4]) AS other) AS texts"
+  measured "(SELECT shape FROM tetrahedra WHERE shape IS NOT NULL)"
   # Solids and geometries of PostGIS, whose SFCGAL measures them too.
   query -c "COPY documents TO STDOUT" >"$folder/documents"
   ask postgres "CREATE DATABASE gis"

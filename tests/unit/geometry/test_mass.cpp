@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmpxx.h>
+
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <random>
 
+#include "geometry/mass/area.h"
 #include "geometry/mass/mass.h"
 #include "geometry/measures.h"
 #include "tests/unit/geometry/meshes.h"
@@ -50,7 +53,101 @@ double cut_off(const Mesh& mesh, double height) {
   return volume * (share(0, {1, 2, 3}) + share(1, {0, 2, 3}));  // the second is negative
 }
 
+/// The number of `digits` bits that a grid number is.
+mpf_class float_of(const GridNumber& number, std::int32_t radix, mp_bitcnt_t digits) {
+  mpf_class power(1, digits);
+  for (std::int32_t i = 0; i < std::abs(number.exponent); ++i) power *= radix;
+  const mpf_class mantissa(static_cast<double>(number.mantissa), digits);
+  return number.exponent < 0 ? mpf_class(mantissa / power) : mpf_class(mantissa * power);
+}
+
+/// The area of triangles by Heron's formula in floating-point numbers of many digits (another
+/// formula and another arithmetic than those of area_of), as the nearest double.
+double area_by_heron(const Mesh& mesh) {
+  constexpr mp_bitcnt_t kDigits = 2048;
+  const std::int32_t radix = mesh.solid.lattice().kind == geometry::LatticeKind::binary ? 2 : 10;
+  const auto length = [&](Index from, Index to) {
+    mpf_class square(0, kDigits);
+    for (int axis = 0; axis < 3; ++axis) {
+      mpf_class way(mesh.solid.vertices()[to][axis], kDigits);
+      way -= mpf_class(mesh.solid.vertices()[from][axis], kDigits);
+      way *= float_of(mesh.solid.lattice().step[static_cast<std::size_t>(axis)], radix, kDigits);
+      square += way * way;
+    }
+    return mpf_class(sqrt(square), kDigits);
+  };
+  mpf_class area(0, kDigits);
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const mpf_class a = length(i, j), b = length(j, k), c = length(k, i);
+    const mpf_class half((a + b + c) / 2, kDigits);
+    const mpf_class product(half * (half - a) * (half - b) * (half - c), kDigits);
+    if (product > 0) area += sqrt(product);
+  }
+  double nearest = area.get_d();  // rounded toward zero
+  const double next = std::nextafter(nearest, INFINITY);
+  if (area - mpf_class(nearest, kDigits) > mpf_class(next, kDigits) - area) nearest = next;
+  return nearest;
+}
+
 }  // namespace
+
+TEST_CASE("areas are exact sums, rounded once: rational ones") {
+  // The legs 0.3 and 0.4 have the hypotenuse 0.5, and three such triangles stand on a base.
+  const Mesh flat = tetrahedron({0, 0, 0}, {3, 0, 0}, {0, 4, 0}, {0, 0, 12}, decimetres());
+  CHECK(geometry::area_of(flat.solid, std::span(flat.triangles).first(0)) == 0);
+  CHECK(geometry::area_of(flat.solid, flat.triangles) == area_by_heron(flat));
+  const Mesh cube = tetrahedron({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, decimetres());
+  CHECK(geometry::area_of(cube.solid, std::span(cube.triangles).first(1)) == 0.005);
+}
+
+TEST_CASE("areas are exact sums, rounded once: on all kinds of lattices") {
+  std::mt19937 random(7);
+  const auto number = [&](int reach) {
+    return static_cast<double>(
+        static_cast<int>(random() % (2U * static_cast<unsigned>(reach) + 1)) - reach);
+  };
+  for (int round = 0; round < 4000; ++round) {
+    const int reach = round % 3 == 0 ? 9 : round % 3 == 1 ? 5000 : 900'000'000;
+    Lattice lattice = decimetres();
+    double unit = 1;
+    switch (round % 5) {
+      case 0:
+        lattice.step = {GridNumber{1, -3}, GridNumber{1, -3}, GridNumber{1, -3}};
+        break;
+      case 1:
+        lattice.step = {GridNumber{1, -7}, GridNumber{1, -7}, GridNumber{1, -3}};
+        break;
+      case 2:
+        lattice.kind = geometry::LatticeKind::binary;
+        lattice.step = {GridNumber{1, -10}, GridNumber{1, -10}, GridNumber{1, -10}};
+        break;
+      case 3:
+        lattice = Lattice{};
+        lattice.kind = geometry::LatticeKind::float64;
+        unit = 0x1p-7;
+        break;
+      default:
+        lattice.step = {GridNumber{25, -11}, GridNumber{25, -11}, GridNumber{25, -11}};
+    }
+    const auto place = [&] {
+      return Point{number(reach) * unit, number(reach) * unit, number(reach) * unit};
+    };
+    const Mesh mesh = tetrahedron(place(), place(), place(), place(), lattice);
+    CHECK(geometry::area_of(mesh.solid, mesh.triangles) == area_by_heron(mesh));
+  }
+}
+
+TEST_CASE("a sum of roots at the border of two doubles is decided by more digits") {
+  // 321 * 28059810762433 is 2^53 + 1, so that the first triangle's area is half way between two
+  // doubles, of which the even one is taken. The second adds 10^-9 / sqrt(2).
+  Lattice lattice;
+  lattice.step = {GridNumber{1, 0}, GridNumber{1, 0}, GridNumber{1, -9}};
+  const std::vector<Triangle> both{{0, 1, 2}, {0, 3, 4}};
+  const Mesh mesh = mesh_of({{0, 0, 0}, {321, 0, 0}, {0, 28059810762433, 0}, {0, 0, 1}, {1, 1, 0}},
+                            both, lattice);
+  CHECK(geometry::area_of(mesh.solid, std::span(both).first(1)) == 4503599627370496.0);
+  CHECK(geometry::area_of(mesh.solid, both) == 4503599627370497.0);
+}
 
 TEST_CASE("a tetrahedron has its centre of mass, rounded once") {
   const Mesh mesh = tetrahedron({0, 0, 0}, {30, 0, 0}, {0, 30, 0}, {0, 0, 30}, decimetres());

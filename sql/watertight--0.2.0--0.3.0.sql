@@ -236,6 +236,32 @@ END;
 COMMENT ON FUNCTION wt_findings(bytea, jsonb) IS
   'findings about a solid (EWKB) by these rules as rows, errors first';
 
+-- The body finds the extension's schema by name, because a dynamic statement is parsed when it runs.
+CREATE FUNCTION wt_recheck(relation regclass, column_name name)
+  RETURNS TABLE (part regclass, place tid, code integer, name text, facet integer, witness float8[], message text)
+  LANGUAGE plpgsql STABLE STRICT PARALLEL SAFE COST 1000000 ROWS 10 AS $$
+DECLARE
+  home constant text := (SELECT pg_catalog.quote_ident(n.nspname) FROM pg_catalog.pg_extension AS e
+    JOIN pg_catalog.pg_namespace AS n ON n.oid = e.extnamespace WHERE e.extname = 'watertight');
+  blob bytea;
+BEGIN
+  FOR part, place, blob IN EXECUTE pg_catalog.format(
+    'SELECT tableoid::regclass, ctid, %1$I::bytea FROM %2$s WHERE %1$I IS NOT NULL', column_name, relation)
+  LOOP
+    BEGIN
+      RETURN QUERY EXECUTE pg_catalog.format(
+        'SELECT $1, $2, f.code, f.name, f.facet, f.witness, f.message
+         FROM %1$s.wt_findings(%1$s.wt_decode($3), %1$s.wt_rules_of($3)) AS f WHERE f.severity = $4', home)
+        USING part, place, blob, 'error';
+    EXCEPTION WHEN data_exception THEN
+      code := NULL; name := NULL; facet := NULL; witness := NULL; message := SQLERRM;
+      RETURN NEXT;
+    END;
+  END LOOP;
+END $$;
+COMMENT ON FUNCTION wt_recheck(regclass, name) IS
+  'judges the solids or blobs of a column again, tetrahedralization included, by the rules that they state; a row for each error and for each blob that cannot be read';
+
 -- Order and equality, by canonical forms.
 CREATE FUNCTION wt_solid_lt(solid, solid) RETURNS boolean
   AS 'MODULE_PATHNAME', 'wt_solid_lt' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;

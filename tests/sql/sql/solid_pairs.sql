@@ -58,4 +58,17 @@ SELECT wt_srid(moved), round(wt_volume(moved)::numeric, 12) AS cubic_degrees, ab
 SELECT wt_transform(shape, 28992) FROM boxes WHERE id = 0;
 SELECT wt_transform(shape, 999999) FROM town WHERE name = 'postgis cube';
 SELECT wt_transform(shape, 0) FROM town WHERE name = 'postgis cube';
+
+-- A column is judged again: damaged blobs among good ones.
+SELECT count(*) AS findings FROM wt_recheck('town', 'shape');
+CREATE TABLE blobs (id integer, blob bytea) PARTITION BY LIST (id);
+CREATE TABLE blobs_1 PARTITION OF blobs FOR VALUES IN (1, 2);
+CREATE TABLE blobs_2 PARTITION OF blobs FOR VALUES IN (3, 4);
+INSERT INTO blobs SELECT 1, wt_blob_of(shape) FROM town WHERE name = 'hollow'
+  UNION ALL SELECT 2, overlay(wt_blob_of(shape) placing '\xff'::bytea from 12) FROM town WHERE name = 'hollow'
+  UNION ALL SELECT 3, NULL UNION ALL SELECT 4, '\x5754'::bytea;
+SELECT part, place, code, name, message FROM wt_recheck('blobs', 'blob');
+SELECT * FROM wt_recheck('blobs', 'none');
+SELECT * FROM wt_recheck('blobs', 'id');
+DROP TABLE blobs;
 DROP TABLE boxes;

@@ -37,109 +37,142 @@ DoublePair exact_sum(double a, double b) {
   return {sum, (a - (sum - share)) + (b - share)};
 }
 
-/// a * b, exactly, without overflow and underflow.
+/// a * b, exactly, unless a number is too large or too small.
 DoublePair exact_product(double a, double b) {
   const double product = a * b;
   return {product, std::fma(a, b, -product)};
 }
 
-/// The double nearest to a number up to 2^127, and what is left, rounded.
-DoublePair pair_of(UnsignedWide number) {
-  const auto high = static_cast<double>(number);
-  const Wide rest = static_cast<Wide>(number) - static_cast<Wide>(high);
-  return {high, static_cast<double>(rest)};
+/// a * b - c * d with an error of less than 2^-104 of |a * b| + |c * d|.
+DoublePair determinant(double a, double b, double c, double d) {
+  const DoublePair first = exact_product(a, b);
+  const DoublePair second = exact_product(c, d);
+  const DoublePair high = exact_sum(first.high, -second.high);
+  return exact_sum(high.high, high.low + (first.low - second.low));
 }
 
-/// The square root of a number up to 2^127 with a relative error of less than 2^-102.
-DoublePair root_of(UnsignedWide number) {
-  if (number == 0) return {};
-  const DoublePair exact = pair_of(number);
-  const double root = std::sqrt(exact.high);
+/// a + b of numbers that are not negative, with a relative error of less than 2^-103.
+DoublePair sum_of(const DoublePair& a, const DoublePair& b) {
+  const DoublePair high = exact_sum(a.high, b.high);
+  return exact_sum(high.high, high.low + (a.low + b.low));
+}
+
+/// The square of a number with a relative error of less than 2^-103.
+DoublePair square_of(const DoublePair& number) {
+  const DoublePair square = exact_product(number.high, number.high);
+  return exact_sum(square.high, square.low + 2 * number.high * number.low);
+}
+
+/// The square root of a number that is not negative, with a relative error of less than 2^-102.
+DoublePair root_of(const DoublePair& number) {
+  if (number.high <= 0) return {};
+  const double root = std::sqrt(number.high);
   const DoublePair square = exact_product(root, root);
-  const double rest = (exact.high - square.high) + (exact.low - square.low);
+  const double rest = (number.high - square.high) + (number.low - square.low);
   return exact_sum(root, rest / (2 * root));
 }
 
-/// Coordinates below this are integers whose differences are exact doubles.
-constexpr double kExactEnd = 4503599627370496.0;  // 2^52
-/// Differences below this have cross products below 2^62, with squares that add up to 2^126.
-constexpr double kDifferenceEnd = 1073741824.0;  // 2^30
-
-/// The square of the length of the cross product of two edges, in lattice units. Nothing if the
-/// coordinates are no integers, or are too large.
-std::optional<UnsignedWide> squared_cross_product(const Point& a, const Point& b, const Point& c) {
-  std::array<std::int64_t, 3> u{};
-  std::array<std::int64_t, 3> v{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double origin = a[axis];
-    if (!(std::abs(origin) < kExactEnd && std::abs(b[axis]) < kExactEnd &&
-          std::abs(c[axis]) < kExactEnd) ||
-        origin != std::trunc(origin) || b[axis] != std::trunc(b[axis]) ||
-        c[axis] != std::trunc(c[axis])) {
-      return std::nullopt;
-    }
-    const double first = b[axis] - origin;
-    const double second = c[axis] - origin;
-    if (!(std::abs(first) < kDifferenceEnd && std::abs(second) < kDifferenceEnd)) {
-      return std::nullopt;
-    }
-    u[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(first);
-    v[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(second);
-  }
-  UnsignedWide square = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t next = (axis + 1) % 3;
-    const std::size_t last = (axis + 2) % 3;
-    const Wide component = Wide{u[next] * v[last]} - Wide{u[last] * v[next]};
-    square += static_cast<UnsignedWide>(component * component);
-  }
-  return square;
-}
-
-/// The area of a square of the lattice: a quotient of two integers.
-struct UnitArea {
+/// The steps of a lattice as integers times a common unit, whose square is a quotient.
+struct CommonUnit {
+  std::array<double, 3> steps{};
   double numerator = 1;
   double denominator = 1;
 };
 
-/// Nothing if the steps are not alike or the integers are too large.
-std::optional<UnitArea> unit_area(const Lattice& lattice) {
-  const GridNumber& step = lattice.step[0];
-  for (const GridNumber& other : lattice.step) {
-    if (other.mantissa != step.mantissa || other.exponent != step.exponent) return std::nullopt;
+/// radix^exponent, exactly, or nothing.
+std::optional<double> exact_power(std::int32_t radix, std::int32_t exponent) {
+  constexpr std::int32_t kMostDigits = 22;  // 10^22 is a double
+  constexpr std::int32_t kMostBits = 200;
+  if (exponent > (radix == 2 ? kMostBits : kMostDigits)) return std::nullopt;
+  return radix == 2 ? std::ldexp(1.0, exponent) : static_cast<double>(power_of_ten(exponent));
+}
+
+/// Nothing if a number would have to be rounded.
+std::optional<CommonUnit> common_unit(const Lattice& lattice) {
+  const std::int32_t radix = lattice.kind == LatticeKind::binary ? 2 : 10;
+  const std::int32_t exponent =
+      std::min({lattice.step[0].exponent, lattice.step[1].exponent, lattice.step[2].exponent});
+  CommonUnit unit;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto power = exact_power(radix, lattice.step[axis].exponent - exponent);
+    constexpr std::int64_t kExactEnd = std::int64_t{1} << 53U;
+    if (!power || lattice.step[axis].mantissa > kExactEnd) return std::nullopt;
+    const auto step = exact_product(static_cast<double>(lattice.step[axis].mantissa), *power);
+    if (step.low != 0) return std::nullopt;
+    unit.steps[axis] = step.high;
   }
-  if (lattice.kind != LatticeKind::decimal) return std::nullopt;
-  constexpr std::int64_t kMostMantissa = 1 << 26;  // its square is a double
-  constexpr std::int32_t kMostDigits = 22;         // 10^22 is a double
-  if (step.exponent > 0 || -2 * step.exponent > kMostDigits || step.mantissa >= kMostMantissa) {
-    return std::nullopt;
+  const auto square = exact_power(radix, 2 * std::abs(exponent));
+  if (!square) return std::nullopt;
+  (exponent < 0 ? unit.denominator : unit.numerator) = *square;
+  return unit;
+}
+
+/// Numbers of this size, and zero, have products of four without overflow and lost digits.
+bool is_moderate(double number) {
+  return number == 0 || (std::abs(number) < 0x1p100 && std::abs(number) > 0x1p-100);
+}
+
+/// A way from one vertex to another in common units, or nothing if it must be rounded.
+std::optional<std::array<double, 3>> exact_way(const Point& from, const Point& to,
+                                               const CommonUnit& unit) {
+  std::array<double, 3> way{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<int>(axis);
+    const DoublePair difference = exact_sum(to[at], -from[at]);
+    const DoublePair product = exact_product(difference.high, unit.steps[axis]);
+    if (difference.low != 0 || product.low != 0 || !is_moderate(product.high)) return std::nullopt;
+    way[axis] = product.high;
   }
-  const auto mantissa = static_cast<double>(step.mantissa);
-  return UnitArea{mantissa * mantissa, static_cast<double>(power_of_ten(-2 * step.exponent))};
+  return way;
+}
+
+/// A sum with the largest error that it may have.
+struct BoundedSum {
+  DoublePair sum;
+  double error = 0;
+};
+
+/// The sum of the lengths of cross products in squared common units.
+std::optional<BoundedSum> sum_by_pairs(std::span<const Point> vertices,
+                                       std::span<const Triangle> triangles,
+                                       const CommonUnit& unit) {
+  BoundedSum total;
+  double reach = 0;  // the sum of the products of which determinants are made
+  for (const auto& [a, b, c] : triangles) {
+    const auto u = exact_way(vertices[a], vertices[b], unit);
+    const auto v = exact_way(vertices[a], vertices[c], unit);
+    if (!u || !v) return std::nullopt;
+    DoublePair square;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t next = (axis + 1) % 3;
+      const std::size_t last = (axis + 2) % 3;
+      square =
+          sum_of(square, square_of(determinant((*u)[next], (*v)[last], (*u)[last], (*v)[next])));
+      reach += std::abs((*u)[next] * (*v)[last]) + std::abs((*u)[last] * (*v)[next]);
+    }
+    total.sum = sum_of(total.sum, root_of(square));
+  }
+  // Each root, and each step of the sum, is within 2^-101 of the sum.
+  const auto steps = static_cast<double>(triangles.size()) + 4;
+  total.error = reach * 0x1p-102 + total.sum.high * steps * 0x1p-100;
+  return total;
 }
 
 /// The area by pairs of doubles. Nothing if they do not decide the rounding.
 std::optional<double> area_by_pairs(const Solid& solid, std::span<const Triangle> triangles) {
-  const auto unit = unit_area(solid.lattice());
+  const auto unit = common_unit(solid.lattice());
   if (!unit) return std::nullopt;
-  DoublePair sum;
-  for (const auto& [a, b, c] : triangles) {
-    const auto square =
-        squared_cross_product(solid.vertices()[a], solid.vertices()[b], solid.vertices()[c]);
-    if (!square) return std::nullopt;
-    const DoublePair root = root_of(*square);
-    const DoublePair high = exact_sum(sum.high, root.high);
-    sum = exact_sum(high.high, high.low + (sum.low + root.low));
-  }
-  // The sum times numerator / denominator / 2: a quotient, and what is left of it.
-  const DoublePair scaled = exact_product(sum.high, unit->numerator);
-  const double rest = scaled.low + sum.low * unit->numerator;
+  const auto total = sum_by_pairs(solid.vertices(), triangles, *unit);
+  if (!total) return std::nullopt;
+  // The sum times numerator / denominator: a quotient, and what is left of it.
+  const DoublePair scaled = exact_product(total->sum.high, unit->numerator);
+  const double rest = scaled.low + total->sum.low * unit->numerator;
   const double quotient = scaled.high / unit->denominator;
   const DoublePair back = exact_product(quotient, unit->denominator);
   const double left = ((scaled.high - back.high) + (rest - back.low)) / unit->denominator;
   const DoublePair twice = exact_sum(quotient, left);
-  // Each term and each step of the sum is within 2^-101 of the sum, the quotient within 2^-100.
-  const double error = twice.high * (static_cast<double>(triangles.size()) + 4) * 0x1p-100;
+  const double error =
+      total->error * (unit->numerator / unit->denominator) * (1 + 0x1p-40) + twice.high * 0x1p-99;
   if (twice.high + (twice.low + error) != twice.high ||
       twice.high + (twice.low - error) != twice.high) {
     return std::nullopt;

@@ -43,10 +43,23 @@ DoublePair exact_product(double a, double b) {
   return {product, std::fma(a, b, -product)};
 }
 
-/// a * b - c * d with an error of less than 2^-104 of |a * b| + |c * d|.
-DoublePair determinant(double a, double b, double c, double d) {
-  const DoublePair first = exact_product(a, b);
-  const DoublePair second = exact_product(c, d);
+/// The double nearest to a number, and the rest of the number, rounded.
+DoublePair pair_of(UnsignedWide number) {
+  const auto high = static_cast<double>(number);
+  return {high, static_cast<double>(static_cast<Wide>(number) - static_cast<Wide>(high))};
+}
+
+/// a * b with a relative error of less than 2^-103.
+DoublePair product_of(const DoublePair& a, const DoublePair& b) {
+  const DoublePair high = exact_product(a.high, b.high);
+  return {high.high, high.low + (a.high * b.low + a.low * b.high)};
+}
+
+/// a * b - c * d with an error of less than 2^-102 of |a * b| + |c * d|.
+DoublePair determinant(const DoublePair& a, const DoublePair& b, const DoublePair& c,
+                       const DoublePair& d) {
+  const DoublePair first = product_of(a, b);
+  const DoublePair second = product_of(c, d);
   const DoublePair high = exact_sum(first.high, -second.high);
   return exact_sum(high.high, high.low + (first.low - second.low));
 }
@@ -75,33 +88,33 @@ DoublePair root_of(const DoublePair& number) {
 /// The steps of a lattice as integers times a common unit, whose square is a quotient.
 struct CommonUnit {
   std::array<double, 3> steps{};
-  double numerator = 1;
-  double denominator = 1;
+  DoublePair numerator{1, 0};
+  DoublePair denominator{1, 0};
 };
 
-/// radix^exponent, exactly, or nothing.
-std::optional<double> exact_power(std::int32_t radix, std::int32_t exponent) {
-  constexpr std::int32_t kMostDigits = 22;  // 10^22 is a double
+/// radix^exponent, or nothing if it is large.
+std::optional<DoublePair> power_of(std::int32_t radix, std::int32_t exponent) {
+  constexpr std::int32_t kMostDigits = 38;
   constexpr std::int32_t kMostBits = 200;
   if (exponent > (radix == 2 ? kMostBits : kMostDigits)) return std::nullopt;
-  return radix == 2 ? std::ldexp(1.0, exponent) : static_cast<double>(power_of_ten(exponent));
+  return radix == 2 ? DoublePair{std::ldexp(1.0, exponent), 0} : pair_of(power_of_ten(exponent));
 }
 
-/// Nothing if a number would have to be rounded.
+/// Nothing if a step would have to be rounded, or the unit is very small or large.
 std::optional<CommonUnit> common_unit(const Lattice& lattice) {
   const std::int32_t radix = lattice.kind == LatticeKind::binary ? 2 : 10;
   const std::int32_t exponent =
       std::min({lattice.step[0].exponent, lattice.step[1].exponent, lattice.step[2].exponent});
   CommonUnit unit;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto power = exact_power(radix, lattice.step[axis].exponent - exponent);
+    const auto power = power_of(radix, lattice.step[axis].exponent - exponent);
     constexpr std::int64_t kExactEnd = std::int64_t{1} << 53U;
-    if (!power || lattice.step[axis].mantissa > kExactEnd) return std::nullopt;
-    const auto step = exact_product(static_cast<double>(lattice.step[axis].mantissa), *power);
+    if (!power || power->low != 0 || lattice.step[axis].mantissa > kExactEnd) return std::nullopt;
+    const auto step = exact_product(static_cast<double>(lattice.step[axis].mantissa), power->high);
     if (step.low != 0) return std::nullopt;
     unit.steps[axis] = step.high;
   }
-  const auto square = exact_power(radix, 2 * std::abs(exponent));
+  const auto square = power_of(radix, 2 * std::abs(exponent));
   if (!square) return std::nullopt;
   (exponent < 0 ? unit.denominator : unit.numerator) = *square;
   return unit;
@@ -112,16 +125,16 @@ bool is_moderate(double number) {
   return number == 0 || (std::abs(number) < 0x1p100 && std::abs(number) > 0x1p-100);
 }
 
-/// A way from one vertex to another in common units, or nothing if it must be rounded.
-std::optional<std::array<double, 3>> exact_way(const Point& from, const Point& to,
-                                               const CommonUnit& unit) {
-  std::array<double, 3> way{};
+using Way = std::array<DoublePair, 3>;
+
+/// The way from one vertex to another in common units, each number with a relative error of less
+/// than 2^-104. Nothing if a number is very small or large.
+std::optional<Way> way_between(const Point& from, const Point& to, const CommonUnit& unit) {
+  Way way{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<int>(axis);
-    const DoublePair difference = exact_sum(to[at], -from[at]);
-    const DoublePair product = exact_product(difference.high, unit.steps[axis]);
-    if (difference.low != 0 || product.low != 0 || !is_moderate(product.high)) return std::nullopt;
-    way[axis] = product.high;
+    way[axis] = product_of(exact_sum(to[at], -from[at]), {unit.steps[axis], 0});
+    if (!is_moderate(way[axis].high)) return std::nullopt;
   }
   return way;
 }
@@ -139,8 +152,8 @@ std::optional<BoundedSum> sum_by_pairs(std::span<const Point> vertices,
   BoundedSum total;
   double reach = 0;  // the sum of the products of which determinants are made
   for (const auto& [a, b, c] : triangles) {
-    const auto u = exact_way(vertices[a], vertices[b], unit);
-    const auto v = exact_way(vertices[a], vertices[c], unit);
+    const auto u = way_between(vertices[a], vertices[b], unit);
+    const auto v = way_between(vertices[a], vertices[c], unit);
     if (!u || !v) return std::nullopt;
     DoublePair square;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -148,13 +161,14 @@ std::optional<BoundedSum> sum_by_pairs(std::span<const Point> vertices,
       const std::size_t last = (axis + 2) % 3;
       square =
           sum_of(square, square_of(determinant((*u)[next], (*v)[last], (*u)[last], (*v)[next])));
-      reach += std::abs((*u)[next] * (*v)[last]) + std::abs((*u)[last] * (*v)[next]);
+      reach +=
+          std::abs((*u)[next].high * (*v)[last].high) + std::abs((*u)[last].high * (*v)[next].high);
     }
     total.sum = sum_of(total.sum, root_of(square));
   }
   // Each root, and each step of the sum, is within 2^-101 of the sum.
   const auto steps = static_cast<double>(triangles.size()) + 4;
-  total.error = reach * 0x1p-102 + total.sum.high * steps * 0x1p-100;
+  total.error = reach * 0x1p-100 + total.sum.high * steps * 0x1p-100;
   return total;
 }
 
@@ -165,14 +179,15 @@ std::optional<double> area_by_pairs(const Solid& solid, std::span<const Triangle
   const auto total = sum_by_pairs(solid.vertices(), triangles, *unit);
   if (!total) return std::nullopt;
   // The sum times numerator / denominator: a quotient, and what is left of it.
-  const DoublePair scaled = exact_product(total->sum.high, unit->numerator);
-  const double rest = scaled.low + total->sum.low * unit->numerator;
-  const double quotient = scaled.high / unit->denominator;
-  const DoublePair back = exact_product(quotient, unit->denominator);
-  const double left = ((scaled.high - back.high) + (rest - back.low)) / unit->denominator;
+  const DoublePair scaled = product_of(total->sum, unit->numerator);
+  const double quotient = scaled.high / unit->denominator.high;
+  const DoublePair back = product_of({quotient, 0}, unit->denominator);
+  const double left =
+      ((scaled.high - back.high) + (scaled.low - back.low)) / unit->denominator.high;
   const DoublePair twice = exact_sum(quotient, left);
   const double error =
-      total->error * (unit->numerator / unit->denominator) * (1 + 0x1p-40) + twice.high * 0x1p-99;
+      total->error * (unit->numerator.high / unit->denominator.high) * (1 + 0x1p-40) +
+      twice.high * 0x1p-99;
   if (twice.high + (twice.low + error) != twice.high ||
       twice.high + (twice.low - error) != twice.high) {
     return std::nullopt;

@@ -226,6 +226,13 @@ if [ -x "$build/bin/encode_documents" ]; then
     exit 1
   fi
   echo "PostGIS and SFCGAL agree"
+  # Map programs see a view of solids as a layer.
+  features=$(ask gis "SELECT count(*) FROM small")
+  run ogrinfo -so "PG:host=$folder/socket user=watertight dbname=gis" for_maps >"$folder/layer" 2>&1 || true
+  for line in "Geometry: 3D PolyhedralSurface" "Feature Count: $features"; do
+    grep -qxF "$line" "$folder/layer" || { echo "GDAL sees no layer of solids:"; cat "$folder/layer"; exit 1; }
+  done
+  echo "GDAL sees a view of $features solids as a layer of polyhedral surfaces"
   counts=$(query -c "SELECT count(blob), count(*) - count(blob) FROM documents")
   [ "${counts%|*}" -ge 500 ] || { echo "only ${counts%|*} blobs were compared"; exit 1; }
   echo "${counts%|*} blobs of SQL and library are equal, ${counts#*|} solids invalid in both"

@@ -40,7 +40,10 @@ add_library(watertight_cgal INTERFACE)
 target_link_libraries(watertight_cgal INTERFACE CGAL::CGAL)
 target_compile_definitions(watertight_cgal INTERFACE CGAL_NDEBUG=1)
 
-set(WATERTIGHT_CORE base geometry tessellate delaunay codec)
+# A linker takes the objects that a program calls. Those of the decoder must not call the operating system
+# (tests/core), so that they are not put together with others where these tests run.
+set(WATERTIGHT_APART base geometry tessellate delaunay codec CACHE STRING
+  "Folders of which each file is an object of its own, also with CMAKE_UNITY_BUILD")
 
 # watertight_folder(NAME SOURCES files... DEPENDS folders... [PRIVATE third-party targets...])
 # Declares the library watertight_NAME. DEPENDS is the list of folders whose headers NAME may
@@ -54,9 +57,7 @@ function(watertight_folder name)
   if(arg_SOURCES)
     add_library(watertight_${name} STATIC ${arg_SOURCES})
     target_link_libraries(watertight_${name} PUBLIC watertight_options ${libraries} PRIVATE ${arg_PRIVATE})
-    # A linker takes the objects that a program calls. Those of the decoder must not call the operating
-    # system (tests/core), so they are not put together with others.
-    if(name IN_LIST WATERTIGHT_CORE AND CMAKE_BUILD_TYPE STREQUAL "Release")
+    if(name IN_LIST WATERTIGHT_APART)
       set_target_properties(watertight_${name} PROPERTIES UNITY_BUILD OFF)
     endif()
   else()

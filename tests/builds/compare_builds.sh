@@ -40,7 +40,7 @@ build() {
   directory=$2
   shift 2
   if ! {
-    cmake -S "$source_directory" -B "$directory" -G Ninja -DWATERTIGHT_BENCH=OFF -DCMAKE_UNITY_BUILD=ON "$@" &&
+    cmake -S "$source_directory" -B "$directory" -G Ninja -DWATERTIGHT_BENCH=OFF -DCMAKE_UNITY_BUILD=ON -DWATERTIGHT_APART= "$@" &&
       cmake --build "$directory" --target build_fingerprint --parallel 2
   } >"$work_directory/$name.log" 2>&1; then
     echo "$name: the build failed"

@@ -62,6 +62,13 @@ def options_of(entry, path):
     return tuple(options)
 
 
+def sources_of(path, build):
+    """The sources that a compiler reads for one entry of the database: several for a file of a unity build."""
+    if build in path.parents and path.parent.name == "Unity":
+        return [pathlib.Path(name) for name in INCLUDE.findall(path.read_text())]
+    return [path]
+
+
 def main(arguments):
     root, build = pathlib.Path(arguments[0]).resolve(), pathlib.Path(arguments[1]).resolve()
     only = set(arguments[2:])
@@ -75,20 +82,25 @@ def main(arguments):
     settings = (root / ".clang-tidy").read_bytes()
     cache, heavy, seen, units = {}, [], set(), {}
     for entry in commands:
-        path = pathlib.Path(entry["directory"], entry["file"]).resolve()
-        if root not in path.parents:
-            continue
-        name = str(path.relative_to(root))
-        if name in seen or name.split("/")[0] not in FOLDERS or (only and name not in only):
-            continue
-        if not name.endswith(".cpp"):
-            continue
-        seen.add(name)
-        ours, foreign = closure(root, name, cache)
-        if any(header.startswith(TOO_HEAVY) for header in foreign):
-            heavy.append(name)
-            continue
-        units.setdefault((name.split("/")[0], options_of(entry, path)), []).append((name, ours))
+        given = pathlib.Path(entry["directory"], entry["file"]).resolve()
+        options = options_of(entry, given)
+        for path in sources_of(given, build):
+            if root not in path.parents or path.suffix != ".cpp":
+                continue
+            name = str(path.relative_to(root))
+            if name in seen or name.split("/")[0] not in FOLDERS or (only and name not in only):
+                continue
+            seen.add(name)
+            ours, foreign = closure(root, name, cache)
+            if any(header.startswith(TOO_HEAVY) for header in foreign):
+                heavy.append(name)
+                continue
+            units.setdefault((name.split("/")[0], options), []).append((name, ours))
+    missing = [str(path.relative_to(root)) for folder in FOLDERS for path in sorted((root / folder).rglob("*.cpp"))]
+    missing = [name for name in missing if name not in seen and not only]
+    if missing:
+        print(f"not in {build / 'compile_commands.json'}, so not checked: {' '.join(missing)}")
+        return 1
 
     batches, unchanged = [], 0
     for (folder, options), files in units.items():

@@ -18,14 +18,16 @@ folder=$(mktemp -d /tmp/watertight-newer-XXXXXX)
 root=$folder/root
 as_postgres() {
   chroot "$root" setpriv --reuid=postgres --regid=postgres --clear-groups \
-    env --chdir=/tmp/work PGTZ=UTC PG_ABS_SRCDIR=/tmp/work PG_ABS_BUILDDIR=/tmp/work "$@"
+    env --chdir=/srv/regress PGTZ=UTC PG_ABS_SRCDIR=/srv/regress PG_ABS_BUILDDIR=/srv/regress "$@"
 }
 bin=/usr/lib/postgresql/$version/bin
 helpers=/usr/lib/postgresql/$version/libexec/watertight
 # shellcheck disable=SC2317 # called by the trap
 cleanup() {
   status=$?
-  as_postgres "$bin/pg_ctl" -D /tmp/work/data -m immediate -s stop >/dev/null 2>&1 || true
+  if [ -f "$root/srv/regress/data/postmaster.pid" ]; then
+    as_postgres "$bin/pg_ctl" -D /srv/regress/data -m immediate -s stop || status=1
+  fi
   rm -rf "$folder"
   exit "$status"
 }
@@ -61,21 +63,21 @@ done | sort -u | while read -r name file; do
   grep -qF "$name " "$folder/libraries" || cp -L "$file" "$root/usr/local/lib/"
 done
 chroot "$root" ldconfig
-mkdir -p "$root/tmp/work/crashing" "$root/tmp/work/hanging"
-printf '#!/bin/sh\nkill -SEGV $$\n' >"$root/tmp/work/crashing/watertight-worker"
-printf '#!/bin/sh\nexec sleep 600\n' >"$root/tmp/work/hanging/watertight-worker"
+mkdir -p "$root/srv/regress/crashing" "$root/srv/regress/hanging"
+printf '#!/bin/sh\nkill -SEGV $$\n' >"$root/srv/regress/crashing/watertight-worker"
+printf '#!/bin/sh\nexec sleep 600\n' >"$root/srv/regress/hanging/watertight-worker"
 for fake in crashing hanging; do
-  chmod +x "$root/tmp/work/$fake/watertight-worker"
-  cp "$root/tmp/work/$fake/watertight-worker" "$root/tmp/work/$fake/watertight-tetgen"
+  chmod +x "$root/srv/regress/$fake/watertight-worker"
+  cp "$root/srv/regress/$fake/watertight-worker" "$root/srv/regress/$fake/watertight-tetgen"
 done
-cp -r "$source/tests/sql/sql" "$root/tmp/work/"
-chroot "$root" chown -R postgres: /tmp/work
+cp -r "$source/tests/sql/sql" "$root/srv/regress/"
+chroot "$root" chown -R postgres: /srv/regress
 
 # The server sees no /proc here, in which the extension would find its helpers.
-as_postgres "$bin/initdb" -D /tmp/work/data -N --username=postgres --encoding=UTF8 --no-locale --auth=trust >/dev/null
-as_postgres "$bin/pg_ctl" -D /tmp/work/data -w -s -l /tmp/work/server.log \
-  -o "-c listen_addresses= -c unix_socket_directories=/tmp/work -c fsync=off -c timezone_abbreviations=Default -c watertight.libexec=$helpers" start >/dev/null
-query() { as_postgres "$bin/psql" -X -h /tmp/work "$@"; }
+as_postgres "$bin/initdb" -D /srv/regress/data -N --username=postgres --encoding=UTF8 --no-locale --auth=trust >/dev/null
+as_postgres "$bin/pg_ctl" -D /srv/regress/data -w -s -l /srv/regress/server.log \
+  -o "-c listen_addresses= -c unix_socket_directories=/srv/regress -c fsync=off -c timezone_abbreviations=Default -c watertight.libexec=$helpers" start >/dev/null
+query() { as_postgres "$bin/psql" -X -h /srv/regress "$@"; }
 query -q -d postgres -c "CREATE DATABASE regression"
 query -q -d regression -c "CREATE EXTENSION watertight"
 status=0

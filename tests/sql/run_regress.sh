@@ -228,7 +228,8 @@ if [ -x "$build/bin/encode_documents" ]; then
   echo "PostGIS and SFCGAL agree"
   # Map programs see a view of solids as a layer.
   features=$(ask gis "SELECT count(*) FROM small")
-  run ogrinfo -so "PG:host=$folder/socket user=watertight dbname=gis" for_maps >"$folder/layer" 2>&1 || true
+  run ogrinfo -so "PG:host=$folder/socket user=watertight dbname=gis" for_maps >"$folder/layer" 2>&1 ||
+    { cat "$folder/layer"; exit 1; }
   for line in "Geometry: 3D PolyhedralSurface" "Feature Count: $features"; do
     grep -qxF "$line" "$folder/layer" || { echo "GDAL sees no layer of solids:"; cat "$folder/layer"; exit 1; }
   done

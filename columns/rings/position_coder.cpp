@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kPositionResidualBits = 4;
 constexpr int kPositionMemory = 4;
-constexpr int kIndexBits = 12;
+constexpr int kPositionIndexBits = 12;
 constexpr std::uint32_t kFewPositions = 6;
 constexpr std::size_t kMostKnown = 4096;
 constexpr std::size_t kMostSeen = 65'536;
@@ -155,7 +155,7 @@ std::optional<std::int64_t> PositionCoder::code_known(EntropyStream& stream, Con
   const std::uint64_t coded =
       mixer.number(stream, Question::known_coordinate,
                    {column, hash_of(column, others), hash_of(column, known.last_index)},
-                   index.value_or(0), kIndexBits);
+                   index.value_or(0), kPositionIndexBits);
   if (coded >= known.numbers.size()) {
     stream.fail();
     return 0;

@@ -95,7 +95,8 @@ def main(arguments):
             if any(header.startswith(TOO_HEAVY) for header in foreign):
                 heavy.append(name)
                 continue
-            units.setdefault((name.split("/")[0], options), []).append((name, ours))
+            together = "" if given == path else str(given)  # what is compiled as one is read as one
+            units.setdefault((name.split("/")[0], options, together), []).append((name, ours))
     missing = [str(path.relative_to(root)) for folder in FOLDERS for path in sorted((root / folder).rglob("*.cpp"))]
     missing = [name for name in missing if name not in seen and not only]
     if missing:
@@ -103,7 +104,7 @@ def main(arguments):
         return 1
 
     batches, unchanged = [], 0
-    for (folder, options), files in units.items():
+    for (folder, options, _), files in units.items():
         for start in range(0, len(files), BATCH):
             names = [name for name, _ in files[start:start + BATCH]]
             digest = hashlib.sha256(settings + "\0".join(options).encode())

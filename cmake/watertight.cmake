@@ -20,7 +20,7 @@ target_compile_options(watertight_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>
   $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${WATERTIGHT_WERROR}>>:-Werror>)
 if(CMAKE_UNITY_BUILD) # the file that a compiler is given is not that of an anonymous namespace
-  target_compile_options(watertight_options INTERFACE
+  target_compile_options(watertight_options INTERFACE -ffunction-sections -fdata-sections # see tests/core
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 endif()
 target_compile_definitions(watertight_options INTERFACE $<$<CONFIG:Debug>:WATERTIGHT_CHECKED=1>)
@@ -40,11 +40,6 @@ add_library(watertight_cgal INTERFACE)
 target_link_libraries(watertight_cgal INTERFACE CGAL::CGAL)
 target_compile_definitions(watertight_cgal INTERFACE CGAL_NDEBUG=1)
 
-# A linker takes the objects that a program calls. Those of the decoder must not call the operating system
-# (tests/core), so that they are not put together with others where these tests run.
-set(WATERTIGHT_APART base geometry tessellate delaunay codec CACHE STRING
-  "Folders of which each file is an object of its own, also with CMAKE_UNITY_BUILD")
-
 # watertight_folder(NAME SOURCES files... DEPENDS folders... [PRIVATE third-party targets...])
 # Declares the library watertight_NAME. DEPENDS is the list of folders whose headers NAME may
 # include: the link line and tests/architecture both read it.
@@ -57,9 +52,6 @@ function(watertight_folder name)
   if(arg_SOURCES)
     add_library(watertight_${name} STATIC ${arg_SOURCES})
     target_link_libraries(watertight_${name} PUBLIC watertight_options ${libraries} PRIVATE ${arg_PRIVATE})
-    if(name IN_LIST WATERTIGHT_APART)
-      set_target_properties(watertight_${name} PROPERTIES UNITY_BUILD OFF)
-    endif()
   else()
     add_library(watertight_${name} INTERFACE)
     target_link_libraries(watertight_${name} INTERFACE watertight_options ${libraries})

@@ -32,9 +32,14 @@ if nm -C "$program" | grep -E 'CGAL::Triangulation_3|Delaunay_triangulation_3' |
   exit 1
 fi
 
-# Only the standard libraries of C and C++ are allowed, and GMP, which needs no operating system.
+# Only the standard libraries of C and C++ are allowed, and GMP, which needs no operating system. A
+# linker may name MPFR although it has left out every function that calls it.
+if nm -D --undefined-only "$program" | grep -E 'U mpfr_'; then
+  echo "the program calls MPFR"
+  exit 1
+fi
 if readelf -d "$program" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
-  grep -vE '^(libgmp|libstdc\+\+|libm|libgcc_s|libc|ld-linux[a-z0-9_-]*)\.so'; then
+  grep -vE '^(libgmp|libmpfr|libstdc\+\+|libm|libgcc_s|libc|ld-linux[a-z0-9_-]*)\.so'; then
   echo "the program needs another library"
   exit 1
 fi

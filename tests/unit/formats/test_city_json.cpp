@@ -6,7 +6,7 @@
 #include "formats/document.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_city_json {
 namespace {
 
 using test::kTwoBuildings;
@@ -170,4 +170,4 @@ TEST_CASE("EPSG codes are found in every spelling of a reference system") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_city_json

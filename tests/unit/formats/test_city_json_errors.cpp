@@ -6,7 +6,7 @@
 #include "formats/document.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_city_json_errors {
 namespace {
 
 using test::kTwoBuildings;
@@ -293,4 +293,4 @@ TEST_CASE("errors in a sequence name line, byte and pointer") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_city_json_errors

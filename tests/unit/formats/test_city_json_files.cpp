@@ -13,7 +13,7 @@
 #include "formats/document.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_city_json_files {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
@@ -173,4 +173,4 @@ TEST_CASE("a city model put together from its features is equivalent") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_city_json_files

@@ -8,7 +8,7 @@
 #include "formats/document.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_city_json_templates {
 namespace {
 
 using test::part_of;
@@ -239,4 +239,4 @@ TEST_CASE("a lone CityJSONFeature has solids only with a transform of its own") 
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_city_json_templates

@@ -7,7 +7,7 @@
 #include "formats/ewkb.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_ewkb {
 namespace {
 
 const std::string kHoled =
@@ -221,4 +221,4 @@ TEST_CASE("documents hold several geometries one after the other") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_ewkb

@@ -7,7 +7,7 @@
 #include "formats/feature_reader.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_feature_reader {
 namespace {
 
 /// A source that gives a text in pieces of `step` bytes.
@@ -181,4 +181,4 @@ TEST_CASE("an error of the source is passed on, then the input is at its end") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_feature_reader

@@ -7,7 +7,7 @@
 #include "formats/gml/gml.h"
 #include "gml_samples.h"
 
-namespace watertight {
+namespace watertight::test_gml {
 namespace {
 
 using namespace test;
@@ -421,4 +421,4 @@ TEST_CASE("GML whose decimals span too many digits for one grid is not written a
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_gml

@@ -8,7 +8,7 @@
 #include "formats/gml/city/city.h"
 #include "gml_samples.h"
 
-namespace watertight {
+namespace watertight::test_gml_city {
 namespace {
 
 using namespace test;
@@ -305,4 +305,4 @@ TEST_CASE("GML to CityJSON: equal and missing ids get new ones") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_gml_city

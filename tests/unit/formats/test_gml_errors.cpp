@@ -6,7 +6,7 @@
 
 #include "gml_samples.h"
 
-namespace watertight {
+namespace watertight::test_gml_errors {
 namespace {
 
 using namespace test;
@@ -319,4 +319,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_gml_errors

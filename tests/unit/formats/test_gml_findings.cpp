@@ -15,7 +15,7 @@
 #include "validate/certify.h"
 #include "validate/report_json.h"
 
-namespace watertight {
+namespace watertight::test_gml_findings {
 namespace {
 
 std::vector<int> expected_codes(const std::string& id) {
@@ -158,4 +158,4 @@ TEST_CASE("GML: a solid that cannot be read is 901 with its place, and is not va
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_gml_findings

@@ -5,7 +5,7 @@
 #include "formats/document.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_json_fg {
 namespace {
 
 using test::read;
@@ -153,4 +153,4 @@ TEST_CASE("the type decides the format of JSON files") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_json_fg

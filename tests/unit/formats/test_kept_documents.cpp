@@ -10,7 +10,7 @@
 #include "formats/text/kept_text.h"
 #include "gml_samples.h"
 
-namespace watertight {
+namespace watertight::test_kept_documents {
 namespace {
 
 using namespace test;
@@ -300,4 +300,4 @@ TEST_CASE("kept documents: bytes that the writer would write take a few bytes") 
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_kept_documents

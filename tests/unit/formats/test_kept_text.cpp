@@ -12,7 +12,7 @@
 #include "formats/text/text_layout.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_kept_text {
 namespace {
 
 using test::kTwoBuildings;
@@ -222,4 +222,4 @@ TEST_CASE("a layout cannot make more than the size that it states") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_kept_text

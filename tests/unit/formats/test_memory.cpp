@@ -10,7 +10,7 @@
 #include "formats/feature_reader.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_memory {
 namespace {
 
 /// A line of /proc/self/status, bytes.
@@ -137,4 +137,4 @@ TEST_CASE("a sequence of any length takes the memory of its longest line") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_memory

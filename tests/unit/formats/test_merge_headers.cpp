@@ -7,7 +7,7 @@
 
 #include "formats/city_json/merge_headers.h"
 
-namespace watertight::formats {
+namespace watertight::formats::test_merge_headers {
 namespace {
 
 std::string header(const std::string& scale, const std::string& translate,
@@ -195,4 +195,4 @@ TEST_CASE("a vertex that becomes too large is an error, and so is a header witho
 }
 
 }  // namespace
-}  // namespace watertight::formats
+}  // namespace watertight::formats::test_merge_headers

@@ -15,7 +15,7 @@
 #include "formats/mesh/interior_shells.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_mesh_files {
 namespace {
 
 using test::read;
@@ -369,4 +369,4 @@ TEST_CASE("mesh files are detected by their names and by their contents") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_mesh_files

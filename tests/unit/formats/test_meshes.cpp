@@ -5,7 +5,7 @@
 #include "formats/document.h"
 #include "samples.h"
 
-namespace watertight {
+namespace watertight::test_meshes {
 namespace {
 
 using test::read;
@@ -265,4 +265,4 @@ TEST_CASE("formats are detected by name, else by content") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_meshes

@@ -4,7 +4,7 @@
 #include "formats/feature_reader.h"
 #include "gml_samples.h"
 
-namespace watertight {
+namespace watertight::test_surfaces {
 namespace {
 
 using formats::Surfaces;
@@ -125,4 +125,4 @@ TEST_CASE("a feature of a sequence has its surfaces, on a lattice of their own")
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_surfaces

@@ -5,7 +5,7 @@
 #include "pipeline/advise.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_advise {
 namespace {
 
 std::vector<SubmittedSolid> solids_of(const std::string& text) {
@@ -65,4 +65,4 @@ TEST_CASE("advice about nothing is empty") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_advise

@@ -14,7 +14,7 @@
 #include "tests/generated/generated_solids.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_container {
 namespace {
 
 pipeline::EncodedDocument encoded(const std::string& text,
@@ -581,4 +581,4 @@ TEST_CASE("a GML document of several features comes back from its file byte for 
   CHECK(as_text(documents->front().framing).find("0 9.25") == std::string_view::npos);
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_container

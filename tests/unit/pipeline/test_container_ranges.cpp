@@ -10,7 +10,7 @@
 #include "pipeline/file/selection.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_container_ranges {
 namespace {
 
 using pipeline::ContainerFile;
@@ -541,4 +541,4 @@ TEST_CASE("hashes of ids differ in their first bits when ids differ at their end
   CHECK(pipeline::id_hash("a") == 0x82A2A958A9BECE5BU);
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_container_ranges

@@ -11,7 +11,7 @@
 #include "pipeline/container.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_contracts {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -333,4 +333,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_contracts

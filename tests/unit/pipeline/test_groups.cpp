@@ -6,7 +6,7 @@
 #include "pipeline/outcome_json.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_groups {
 namespace {
 
 /// The vertices of boxes from x to x + 1000; box i has vertices 8 i to 8 i + 7.
@@ -203,4 +203,4 @@ TEST_CASE("the outcome's JSON lists groups") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_groups

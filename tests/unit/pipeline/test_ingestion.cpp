@@ -12,7 +12,7 @@
 #include "pipeline/streaming/ingestion.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_ingestion {
 namespace {
 
 /// A store that notes how much it was given at once.
@@ -314,4 +314,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_ingestion

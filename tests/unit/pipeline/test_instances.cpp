@@ -10,7 +10,7 @@
 #include "pipeline/validate_stream.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_instances {
 namespace {
 
 const std::string kCube =
@@ -242,4 +242,4 @@ TEST_CASE("ingest skips the features whose instances are not valid") {
   CHECK_FALSE(outcome->features.at(1).is_stored);
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_instances

@@ -9,7 +9,7 @@
 #include "tests/files.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_pipeline {
 namespace {
 
 Document read(const std::string& text, Format format = Format::city_json_seq) {
@@ -188,4 +188,4 @@ TEST_CASE("facets that could follow the same Delaunay face keep apart in mode bi
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_pipeline

@@ -8,7 +8,7 @@
 
 #include "pipeline/validate_stream.h"
 
-namespace watertight {
+namespace watertight::test_placed_groups {
 namespace {
 
 const std::string kPlacedSame = "1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
@@ -290,4 +290,4 @@ TEST_CASE("features with instances that do not fit are refused") {
   CHECK(accepted->document.features.size() == 1);
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_placed_groups

@@ -9,7 +9,7 @@
 #include "pipeline/pipeline.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_sequences {
 namespace {
 
 using pipeline::CollectionExport;
@@ -151,4 +151,4 @@ TEST_CASE("coordinates on no decimal grid, and a city model without transform, a
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_sequences

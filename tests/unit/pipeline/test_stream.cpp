@@ -8,7 +8,7 @@
 #include "pipeline/validate_stream.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_stream {
 namespace {
 
 /// A sequence of `count` features; every fifth is open, every seventh is no JSON.
@@ -145,4 +145,4 @@ TEST_CASE("features read far ahead of a slow sink are bounded") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_stream

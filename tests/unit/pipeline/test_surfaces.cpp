@@ -11,7 +11,7 @@
 #include "pipeline/validate_stream.h"
 #include "tests/files.h"
 
-namespace watertight {
+namespace watertight::test_surfaces {
 namespace {
 
 using formats::Surfaces;
@@ -228,4 +228,4 @@ TEST_CASE("the rules for surfaces have names") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_surfaces

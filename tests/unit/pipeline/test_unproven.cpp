@@ -9,7 +9,7 @@
 #include "pipeline/streaming/ingestion.h"
 #include "tests/unit/pipeline/samples.h"
 
-namespace watertight {
+namespace watertight::test_unproven {
 namespace {
 
 /// A solid with all that a valid one cannot have: equal, unused and far vertices, a ring of two
@@ -261,4 +261,4 @@ TEST_CASE("an export of what is proven leaves the other features out") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_unproven

@@ -14,7 +14,7 @@
 #include "tests/unit/server/client.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_access {
 namespace {
 
 using server::Gate;
@@ -272,4 +272,4 @@ TEST_CASE("a request without right is refused before its body comes") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_access

@@ -7,7 +7,7 @@
 #include "server/features/answer_coding.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_answer_codings {
 namespace {
 
 using Fixture = samples::RoutesFixture;
@@ -97,4 +97,4 @@ TEST_CASE_METHOD(Fixture, "a write takes the tag of a compressed answer") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_answer_codings

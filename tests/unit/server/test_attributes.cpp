@@ -10,7 +10,7 @@
 #include "tests/unit/server/answers.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_attributes {
 namespace {
 
 using samples::Json;
@@ -149,4 +149,4 @@ TEST_CASE_METHOD(Fixture, "chosen attributes select items, others are refused by
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_attributes

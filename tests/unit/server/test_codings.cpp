@@ -11,7 +11,7 @@
 #include "tests/unit/archives/pack.h"
 #include "tests/unit/server/client.h"
 
-namespace watertight {
+namespace watertight::test_codings {
 namespace {
 
 using archives::Compression;
@@ -180,4 +180,4 @@ TEST_CASE("other codings are refused with those that are read") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_codings

@@ -5,7 +5,7 @@
 #include "tests/files.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_conversions {
 namespace {
 
 using samples::Json;
@@ -115,4 +115,4 @@ TEST_CASE_METHOD(ConversionRoutes,
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_conversions

@@ -4,7 +4,7 @@
 
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_edits {
 namespace {
 
 using samples::feature;
@@ -149,4 +149,4 @@ TEST_CASE_METHOD(EditRoutes, "no route is brought down by JSON that is nested a 
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_edits

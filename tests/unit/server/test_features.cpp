@@ -13,7 +13,7 @@
 #include "server/items/representation_cache.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_features {
 namespace {
 
 using Catch::Matchers::WithinAbs;
@@ -479,4 +479,4 @@ TEST_CASE_METHOD(City,
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_features

@@ -15,7 +15,7 @@
 #include "tests/unit/pipeline/samples.h"
 #include "tests/unit/server/answers.h"
 
-namespace watertight {
+namespace watertight::test_items {
 namespace {
 
 using Json = nlohmann::json;
@@ -312,4 +312,4 @@ TEST_CASE_METHOD(Items, "a collection changes only from the state that the clien
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_items

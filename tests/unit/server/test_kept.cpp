@@ -6,7 +6,7 @@
 #include "codec/blob.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_kept {
 namespace {
 
 using samples::Json;
@@ -99,4 +99,4 @@ TEST_CASE_METHOD(Fixture,
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_kept

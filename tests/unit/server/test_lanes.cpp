@@ -10,7 +10,7 @@
 #include "server/transport/listener.h"
 #include "tests/unit/server/client.h"
 
-namespace watertight {
+namespace watertight::test_lanes {
 namespace {
 
 constexpr std::chrono::milliseconds kTick{2};
@@ -184,4 +184,4 @@ TEST_CASE("a request that its client never finished is logged") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_lanes

@@ -5,7 +5,7 @@
 #include "server/metrics/metrics.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_metrics {
 namespace {
 
 using server::Metrics;
@@ -93,4 +93,4 @@ TEST_CASE_METHOD(Counting, "the address of probes answers for metrics without a 
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_metrics

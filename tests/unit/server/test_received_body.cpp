@@ -7,7 +7,7 @@
 
 #include "server/transport/received_body.h"
 
-namespace watertight {
+namespace watertight::test_received_body {
 namespace {
 
 std::string random_text(std::mt19937& random, std::size_t length) {
@@ -48,4 +48,4 @@ TEST_CASE("a body that was cleared begins anew") {
   CHECK(body.take() == "a");
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_received_body

@@ -7,7 +7,7 @@
 #include "tests/files.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_reports {
 namespace {
 
 using samples::header_of;
@@ -98,4 +98,4 @@ TEST_CASE_METHOD(ReportRoutes, "a changed collection has another report") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_reports

@@ -13,7 +13,7 @@
 #include "tests/unit/server/answers.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_routes {
 namespace {
 
 using samples::header_of;
@@ -585,4 +585,4 @@ TEST_CASE("targets are decoded strictly") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_routes

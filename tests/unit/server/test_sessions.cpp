@@ -12,7 +12,7 @@
 #include "server/transport/listener.h"
 #include "tests/unit/server/client.h"
 
-namespace watertight {
+namespace watertight::test_sessions {
 namespace {
 
 /// A server whose route "/slow" computes until `release`; all other routes answer at once with the
@@ -567,4 +567,4 @@ TEST_CASE("an address that cannot be listened on is an error") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_sessions

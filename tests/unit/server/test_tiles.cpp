@@ -10,7 +10,7 @@
 #include "server/items/representation_cache.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_tiles {
 namespace {
 
 using samples::header_of;
@@ -181,4 +181,4 @@ TEST_CASE_METHOD(TiledCity, "a feature is a glTF of its own") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_tiles

@@ -14,7 +14,7 @@
 #include "fixture.h"
 #include "tests/unit/pipeline/filter_oracle.h"
 
-namespace watertight {
+namespace watertight::test_attributes {
 using store::AttributeCondition;
 using store::Comparison;
 using test::Database;
@@ -539,4 +539,4 @@ TEST_CASE("a list can be in the order of an attribute, each feature once") {
   CHECK(store->list(query).error().code == ErrorCode::not_found);
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_attributes

@@ -9,7 +9,7 @@
 #include "fixture.h"
 #include "proxy.h"
 
-namespace watertight::test {
+namespace watertight::test::test_batches {
 namespace {
 
 /// Batches of three features with ids "0", "1", ...
@@ -126,4 +126,4 @@ TEST_CASE("batches whose commit was not answered are stored once") {
   }
 }
 
-}  // namespace watertight::test
+}  // namespace watertight::test::test_batches

@@ -14,7 +14,7 @@
 #include "fixture.h"
 #include "store/cluster_files.h"
 
-namespace watertight::test {
+namespace watertight::test::test_cluster {
 namespace {
 
 std::unique_ptr<store::PrivateCluster> started(const store::ClusterOptions& options) {
@@ -232,4 +232,4 @@ TEST_CASE("a user other than root stays this user") {
   CHECK(geteuid() == before);
 }
 
-}  // namespace watertight::test
+}  // namespace watertight::test::test_cluster

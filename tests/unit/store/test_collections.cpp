@@ -8,7 +8,7 @@
 
 #include "fixture.h"
 
-namespace watertight {
+namespace watertight::test_collections {
 using test::Database;
 using test::sample_feature;
 
@@ -255,4 +255,4 @@ TEST_CASE("writers beside removals get the old collection or a new one, never a 
         "0");
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_collections

@@ -7,7 +7,7 @@
 
 #include "fixture.h"
 
-namespace watertight {
+namespace watertight::test_conditions {
 using store::WriteCondition;
 using test::Database;
 using test::sample_feature;
@@ -148,4 +148,4 @@ TEST_CASE("of writers that add one feature exactly one succeeds") {
   CHECK(store->collection("buildings")->features == 50);
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_conditions

@@ -8,7 +8,7 @@
 
 #include "fixture.h"
 
-using namespace watertight;
+namespace watertight::test_counts {
 using test::Database;
 using test::sample_feature;
 
@@ -155,3 +155,5 @@ TEST_CASE(
   REQUIRE(store->put(std::vector{feature_at("a", 1)}));
   CHECK(states.insert(state()).second);
 }
+
+}  // namespace watertight::test_counts

@@ -13,7 +13,7 @@
 #include "fixture.h"
 #include "proxy.h"
 
-namespace watertight::test {
+namespace watertight::test::test_faults {
 namespace {
 
 pid_t postmaster_of(const std::string& data) {
@@ -305,4 +305,4 @@ TEST_CASE("a connection string that leads nowhere is an error at once") {
   CHECK(missing.error().detail.find("no_such_database") != std::string::npos);
 }
 
-}  // namespace watertight::test
+}  // namespace watertight::test::test_faults

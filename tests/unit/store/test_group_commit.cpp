@@ -14,7 +14,7 @@
 
 #include "fixture.h"
 
-namespace watertight {
+namespace watertight::test_group_commit {
 using store::GroupCommit;
 using test::Database;
 using test::sample_feature;
@@ -298,4 +298,4 @@ TEST_CASE("grouped puts whose sessions are cut at any moment happen exactly once
         std::to_string(stored) + " " + std::to_string(stored));
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_group_commit

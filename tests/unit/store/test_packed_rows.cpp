@@ -9,7 +9,7 @@
 #include "packing/text_dictionary.h"
 #include "store/rows/packed_solids.h"
 
-namespace watertight {
+namespace watertight::test_packed_rows {
 namespace {
 
 using test::Database;
@@ -210,4 +210,4 @@ TEST_CASE("a feature is packed again under its version, unless it changed meanwh
   CHECK(store->get("buildings", "b")->skeleton == sample_feature("b").skeleton);
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_packed_rows

@@ -7,7 +7,7 @@
 
 #include "fixture.h"
 
-namespace watertight::test {
+namespace watertight::test::test_store {
 namespace {
 
 ErrorCode put_failure(SolidStore& store, std::vector<StoredFeature> features) {
@@ -452,4 +452,4 @@ TEST_CASE("headers and receipts that nothing needs are swept") {
   CHECK(database.ask("SELECT count(*)::text FROM watertight.write_receipt") == "1");
 }
 
-}  // namespace watertight::test
+}  // namespace watertight::test::test_store

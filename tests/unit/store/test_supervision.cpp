@@ -20,7 +20,7 @@
 #include "fixture.h"
 #include "store/cluster_files.h"
 
-namespace watertight::test {
+namespace watertight::test::test_supervision {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -306,4 +306,4 @@ TEST_CASE("a user that cannot be looked up without free files is no user that is
   CHECK(status == 0);
 }
 
-}  // namespace watertight::test
+}  // namespace watertight::test::test_supervision

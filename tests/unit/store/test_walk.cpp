@@ -10,7 +10,7 @@
 #include "fixture.h"
 #include "store/rows/place.h"
 
-namespace watertight {
+namespace watertight::test_walk {
 using test::Database;
 using test::sample_feature;
 
@@ -324,4 +324,4 @@ TEST_CASE("features that are not proven are placed and ranked by themselves") {
   CHECK(ids == std::vector<std::string>{"f2", "f5", "f7"});
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_walk

@@ -7,7 +7,7 @@
 
 #include "formats/attributes/city_attributes.h"
 
-namespace watertight {
+namespace watertight::test_city_attributes {
 namespace {
 
 using Type = AttributeValue::Type;
@@ -94,4 +94,4 @@ TEST_CASE("a feature has a bounded number of values, and no long path or id is c
   CHECK(values(of_long_id, {"y"}) == std::vector<std::string>{"b y 0 1"});
 }
 
-}  // namespace watertight
+}  // namespace watertight::test_city_attributes

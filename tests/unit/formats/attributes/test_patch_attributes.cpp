@@ -7,7 +7,7 @@
 #include "formats/attributes/patch_attributes.h"
 #include "tests/random.h"
 
-namespace watertight {
+namespace watertight::test_patch_attributes {
 namespace {
 
 using formats::merge_patch;
@@ -136,4 +136,4 @@ TEST_CASE("attributes of one object of a feature are changed") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_patch_attributes

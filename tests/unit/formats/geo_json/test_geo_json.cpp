@@ -8,7 +8,7 @@
 #include "formats/geo_json/geo_json.h"
 #include "formats/geo_json/other_vertices.h"
 
-namespace watertight {
+namespace watertight::test_geo_json {
 namespace {
 
 using formats::CityFeature;
@@ -201,4 +201,4 @@ TEST_CASE("the ranges of other vertices have what no solid uses, in world coordi
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_geo_json

@@ -6,7 +6,7 @@
 
 #include "tests/unit/formats/indoor/indoor_samples.h"
 
-namespace watertight {
+namespace watertight::test_indoor {
 namespace {
 
 using geometry::CellGraph;
@@ -113,4 +113,4 @@ TEST_CASE("GML: states outside of IndoorGML 1.0 and 1.1 are no graph") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_indoor

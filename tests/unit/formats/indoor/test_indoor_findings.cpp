@@ -15,7 +15,7 @@
 #include "pipeline/validate_stream.h"
 #include "tests/unit/formats/indoor/indoor_samples.h"
 
-namespace watertight {
+namespace watertight::test_indoor_findings {
 namespace {
 
 using test::BoxCell;
@@ -338,4 +338,4 @@ TEST_CASE("IndoorGML: a hostile graph takes time and findings in proportion to i
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_indoor_findings

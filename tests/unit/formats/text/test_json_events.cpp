@@ -8,7 +8,7 @@
 #include "formats/text/json_events.h"
 #include "tests/random.h"
 
-using namespace watertight;
+namespace watertight::test_json_events {
 
 namespace {
 
@@ -155,3 +155,5 @@ TEST_CASE("events of damaged texts are those of nlohmann's parser, or the text i
   }
   CHECK(read > 1'000);
 }
+
+}  // namespace watertight::test_json_events

@@ -8,7 +8,7 @@
 #include "tests/unit/server/answers.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_selections {
 namespace {
 
 using samples::header_of;
@@ -110,4 +110,4 @@ TEST_CASE_METHOD(Town, "a GeoPackage of more bytes than the service keeps is ref
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_selections

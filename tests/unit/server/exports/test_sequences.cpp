@@ -8,7 +8,7 @@
 #include "tests/unit/server/answers.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_sequences {
 namespace {
 
 using samples::header_of;
@@ -92,4 +92,4 @@ TEST_CASE_METHOD(Fixture, "a range of a sequence of several is refused like the 
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_sequences

@@ -14,7 +14,7 @@
 #include "tests/unit/server/client.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_jobs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -371,4 +371,4 @@ TEST_CASE("a body that goes to a sink can be longer than those in memory") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_jobs

@@ -9,7 +9,7 @@
 #include "tests/unit/server/answers.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_changes {
 namespace {
 
 using samples::header_of;
@@ -151,4 +151,4 @@ TEST_CASE_METHOD(Town, "a change whose tag does not fit is not done") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_changes

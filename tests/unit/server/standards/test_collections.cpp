@@ -7,7 +7,7 @@
 #include "tests/unit/server/answers.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_collections {
 namespace {
 
 using samples::header_of;
@@ -137,4 +137,4 @@ TEST_CASE_METHOD(Fixture, "an answer names features that may be there twice") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_collections

@@ -9,7 +9,7 @@
 #include "tests/unit/server/answers.h"
 #include "tests/unit/server/routes_fixture.h"
 
-namespace watertight {
+namespace watertight::test_schemas {
 namespace {
 
 using samples::header_of;
@@ -147,4 +147,4 @@ TEST_CASE_METHOD(Town, "GeoJSON comes in the profile that the client wants") {
 }
 
 }  // namespace
-}  // namespace watertight
+}  // namespace watertight::test_schemas

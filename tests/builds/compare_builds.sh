@@ -50,14 +50,17 @@ build() {
 }
 
 # One build for both: without optimization no function is inlined, so that a linker chooses one of two
-# definitions of a name, and with -flto it compares them (-Wodr).
+# definitions of a name, and with -flto it compares them (-Wodr). It links on one core.
 build gxx-O0-LTO "$work_directory/gxx-O0-LTO" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 \
-  -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON
+  -DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON -DWATERTIGHT_ENGINES=OFF &
+background=$!
 # another compiler and another level: -Os chooses other functions to inline than -O3
 build clang-Os "$work_directory/clang-Os" -DCMAKE_BUILD_TYPE=MinSizeRel -DWATERTIGHT_SERVER=OFF \
   -DWATERTIGHT_ENGINES=OFF -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang
-# the engines are not compared: all builds use those of the release build
+wait "$background"
+# the engines are not compared: these builds use those of the release build
 for engine in watertight-worker watertight-tetgen; do
+  ln -sf "$release/bin/$engine" "$work_directory/gxx-O0-LTO/bin/"
   ln -sf "$release/bin/$engine" "$work_directory/clang-Os/bin/"
 done
 build gxx-checked "$source_directory/build/checked" --preset checked

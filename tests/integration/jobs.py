@@ -229,8 +229,9 @@ class Uploader(threading.Thread):
 
 
 def kill_helpers(service):
-    """Kills the helper processes of a service, as soon as there is one; how many there were."""
-    end = time.monotonic() + 10
+    """Kills the helper processes of a service, as soon as there is one; how many there were. The service may have
+    been started just before, and reads two documents again before a solid needs a helper."""
+    end = time.monotonic() + 120
     while time.monotonic() < end:
         killed = 0
         for status in pathlib.Path("/proc").glob("[0-9]*/stat"):

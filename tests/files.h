@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Reads whole files, for tests and for the programs that tests start. The product reads files with
-// limits (cli/files.h).
+// Finds and reads whole files, for tests and for the programs that tests start. The product reads
+// files with limits (cli/files.h).
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,13 @@
 #include "base/bytes.h"
 
 namespace watertight::test {
+
+/// The path of a file or folder that the project's sources have:
+/// source_path("examples/delft.city.jsonl").
+std::string source_path(const std::string& path);
+
+/// The path of a program that was built with the tests.
+std::string program_path(const std::string& name);
 
 /// The content of a file.
 /// Errors: throws, with the path, if the file cannot be read. That fails a test and ends a program.

@@ -67,7 +67,7 @@ void print_pages(const std::string& name, const std::vector<generated::NamedBoun
 
 void print_golden(const std::string& version, const std::string& name) {
   const Bytes bytes =
-      test::read_bytes(std::string(WATERTIGHT_GOLDEN_BLOBS) + "/" + version + "/" + name + ".blob");
+      test::read_bytes(test::source_path("tests/golden/blobs/") + version + "/" + name + ".blob");
   print(version + " file " + name, bytes);
   const auto decoded = decode(bytes);
   auto boundary =

@@ -22,7 +22,7 @@ using test::Database;
 /// Stores the sample tile in a collection; Policy::skip leaves out the solids that need an engine.
 /// Returns its text.
 std::string ingest_tile(SolidStore& store, store::Policy policy = store::Policy::skip) {
-  const Bytes bytes = test::read_bytes(WATERTIGHT_EXAMPLES "/delft.city.jsonl");
+  const Bytes bytes = test::read_bytes(test::source_path("examples/delft.city.jsonl"));
   formats::ReadOptions read;
   read.keep_text = true;
   auto document = formats::read_document(bytes, Format::city_json_seq, read);

@@ -21,8 +21,7 @@ using namespace watertight::solids;
 
 namespace {
 
-const std::filesystem::path kGolden =
-    std::filesystem::path(WATERTIGHT_TEST_DATA) / ".." / "golden" / "solids";
+const std::filesystem::path kGolden = test::source_path("tests/golden/solids");
 
 delaunay::EngineWorkers& engines() {
   static delaunay::EngineWorkers workers;
@@ -180,9 +179,9 @@ TEST_CASE("polyhedra of Chazelle are proven without an engine") {
 }
 
 TEST_CASE("facets that could follow the same Delaunay face are proven without an engine") {
-  const Solid solid = read_solid(
-      test::read_text(WATERTIGHT_TEST_DATA "/solids/facets_that_share_a_triangle.city.json"),
-      Format::city_json);
+  const Solid solid = read_solid(test::read_text(test::source_path(
+                                     "tests/data/solids/facets_that_share_a_triangle.city.json")),
+                                 Format::city_json);
   const Report report = certify(solid, nullptr, {}).report;
   CHECK(report.verdict == Verdict::valid);
   REQUIRE_FALSE(report.attempts.empty());

@@ -39,9 +39,8 @@ class Fixture {
   Fixture& operator=(const Fixture&) = delete;
 
   Ran run(const std::string& arguments) const {
-    const std::string command = "cd " + folder.string() +
-                                " && env -u WATERTIGHT_DATABASE_URL " WATERTIGHT_EXECUTABLE " " +
-                                arguments + " 2>&1";
+    const std::string command = "cd " + folder.string() + " && env -u WATERTIGHT_DATABASE_URL " +
+                                test::program_path("watertight") + " " + arguments + " 2>&1";
     FILE* pipe = ::popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     Ran ran;

@@ -376,7 +376,7 @@ TEST_CASE_METHOD(Fixture, "an error in a blob is reported, whatever the file is 
 
 TEST_CASE_METHOD(Fixture, "a run that is killed leaves nothing behind") {
   const std::string script = "cd " + folder.string() + " && mkfifo in.city.jsonl && { " +
-                             WATERTIGHT_EXECUTABLE +
+                             test::program_path("watertight") +
                              " validate in.city.jsonl --report r.json & p=$!; sleep 0.3; "
                              "kill -9 $p; wait $p; } 2>/dev/null";
   CHECK(std::system(("bash -c '" + script + "'").c_str()) != 0);
@@ -488,9 +488,9 @@ TEST_CASE_METHOD(StoreFixture, "ingest takes more files than may be open, and ex
     write(id + ".jsonl", text);
     names += " " + id + ".jsonl";
   }
-  const Ran stored = run("--version >/dev/null; ulimit -n 280; " WATERTIGHT_EXECUTABLE
-                         " ingest -q --collection town --data-dir data" +
-                         names);
+  const Ran stored =
+      run("--version >/dev/null; ulimit -n 280; " + test::program_path("watertight") +
+          " ingest -q --collection town --data-dir data" + names);
   INFO(stored.output);
   REQUIRE(stored.status == 0);
   CHECK(stored.output.find("features stored                                      300") !=

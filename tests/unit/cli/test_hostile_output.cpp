@@ -36,8 +36,8 @@ class Folder {
 
   /// Runs the command; returns its exit status. Standard output and error go to the file "printed".
   int run(const std::string& arguments) const {
-    const std::string command =
-        "cd " + path_.string() + " && " WATERTIGHT_EXECUTABLE " " + arguments + " > printed 2>&1";
+    const std::string command = "cd " + path_.string() + " && " + test::program_path("watertight") +
+                                " " + arguments + " > printed 2>&1";
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -95,8 +95,8 @@ TEST_CASE("an interior shell that cannot be read is named") {
 #ifndef __SANITIZE_ADDRESS__  // the sanitizer takes terabytes of address space
 TEST_CASE("more jobs than there is memory for threads do not crash the program") {
   const Folder folder;
-  const int status = folder.run("--version && ulimit -v 600000 && " WATERTIGHT_EXECUTABLE
-                                " validate -j 256 in.obj");
+  const int status = folder.run("--version && ulimit -v 600000 && " +
+                                test::program_path("watertight") + " validate -j 256 in.obj");
   INFO(folder.read("printed"));
   CHECK((status == 1 || status == 2));
 }

@@ -80,7 +80,7 @@ TEST_CASE_METHOD(Fixture, "the option --surfaces decides what a bad ring of a su
 
 TEST_CASE_METHOD(Fixture, "closed surfaces are offered as solids, coded and converted as solids") {
   const std::string source =
-      test::read_text(std::string(WATERTIGHT_TEST_DATA) + "/cityjson/surfaces.city.json");
+      test::read_text(test::source_path("tests/data/cityjson/surfaces.city.json"));
   write("s.city.json", source);
   const Ran checked = run("validate s.city.json");
   CHECK(checked.status == 0);

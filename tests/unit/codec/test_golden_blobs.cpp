@@ -17,7 +17,7 @@ using namespace watertight;
 
 namespace {
 
-std::string folder_of_goldens() { return std::string(WATERTIGHT_GOLDEN_BLOBS) + "/version-1/"; }
+std::string folder_of_goldens() { return test::source_path("tests/golden/blobs/version-1/"); }
 
 std::string path_of(const std::string& name) { return folder_of_goldens() + name + ".blob"; }
 
@@ -59,7 +59,7 @@ void write_file(const std::string& path, ByteView bytes) {
 /// The bytes of the document's worked example: the pairs of hexadecimal digits before two spaces in
 /// its fenced lines.
 Bytes example_of(const std::string& document) {
-  const std::string text = test::read_text(WATERTIGHT_TEST_DATA "/../../docs/" + document);
+  const std::string text = test::read_text(test::source_path("docs/") + document);
   const std::size_t example = text.find("\n## Example");
   if (example == std::string::npos) return {};
   std::istringstream lines(text.substr(std::min(text.find("```\n", example), text.size())));

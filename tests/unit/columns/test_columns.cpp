@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "columns/columns.h"
+#include "tests/files.h"
 
 namespace watertight {
 namespace {
@@ -152,7 +153,8 @@ TEST_CASE("numbers of every kind come back as they were written") {
 
 TEST_CASE("every document of the test data comes back") {
   std::size_t documents = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(WATERTIGHT_TEST_DATA)) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(test::source_path("tests/data"))) {
     const std::string ending = entry.path().extension().string();
     if (ending != ".json" && ending != ".jsonl" && ending != ".gml") continue;
     CAPTURE(entry.path().filename().string());

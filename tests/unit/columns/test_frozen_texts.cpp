@@ -43,7 +43,7 @@ std::string hex_of(ByteView bytes) {
 }
 
 Bytes read_example(const std::string& name) {
-  return test::read_bytes(std::filesystem::path(WATERTIGHT_SOURCES) / "columns/models" / name);
+  return test::read_bytes(test::source_path("columns/models/" + name));
 }
 
 /// Texts with all kinds of values: numbers of all forms, UUIDs, counters, rings, vertices, lines.
@@ -124,7 +124,7 @@ TEST_CASE("frozen bytes are read") {
 }
 
 TEST_CASE("golden packed texts are read") {
-  const std::filesystem::path sources = WATERTIGHT_SOURCES;
+  const std::filesystem::path sources = test::source_path("");
   std::size_t found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(sources / "tests/golden/texts")) {
     const std::filesystem::path name = entry.path().stem();

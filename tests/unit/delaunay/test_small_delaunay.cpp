@@ -28,7 +28,7 @@ struct Golden {
 };
 
 std::vector<Golden> read_goldens() {
-  std::istringstream file(test::read_text(WATERTIGHT_GOLDEN_DELAUNAY "/digests.csv"));
+  std::istringstream file(test::read_text(test::source_path("tests/golden/delaunay/digests.csv")));
   std::vector<Golden> goldens;
   std::string line;
   std::getline(file, line);

@@ -15,7 +15,7 @@
 namespace watertight::test {
 
 inline std::string file_text(const std::string& name) {
-  return read_text(WATERTIGHT_TEST_DATA "/" + name);
+  return read_text(test::source_path("tests/data/" + name));
 }
 
 inline Result<Document> read(std::string_view text, Format format, bool is_split = true) {

@@ -32,7 +32,7 @@ const std::map<std::string, std::string> kBroken{
 
 std::vector<std::string> city_files() {
   std::vector<std::string> names;
-  const std::string folder = std::string(WATERTIGHT_TEST_DATA) + "/cityjson";
+  const std::string folder = test::source_path("tests/data/cityjson");
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     names.push_back(entry.path().filename().string());
   }

@@ -236,7 +236,8 @@ TEST_CASE("kept documents: references cannot make more bytes than the stated siz
 
 TEST_CASE("kept documents: every mesh file comes back") {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(WATERTIGHT_TEST_DATA "/meshes")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::source_path("tests/data/meshes"))) {
     const std::string name = entry.path().filename().string();
     if (name == "index0.obj" || name == "index901.obj") continue;  // refused
     const std::string text = file_text("meshes/" + name);

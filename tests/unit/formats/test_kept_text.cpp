@@ -65,7 +65,7 @@ std::string sequence(const std::string& before, const std::string& between,
 
 TEST_CASE("every real city model comes back byte for byte") {
   std::size_t files = 0;
-  const std::string folder = std::string(WATERTIGHT_TEST_DATA) + "/cityjson";
+  const std::string folder = test::source_path("tests/data/cityjson");
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     INFO(name);

@@ -170,8 +170,8 @@ TEST_CASE("JSON strings are escaped and always UTF-8") {
 // Two facets of the solid are not planar and share three vertices. Both could follow one Delaunay
 // face; the bitmap would then have lost one of them.
 TEST_CASE("facets that could follow the same Delaunay face keep apart in mode bitmap") {
-  const Bytes bytes =
-      test::read_bytes(WATERTIGHT_TEST_DATA "/solids/facets_that_share_a_triangle.city.json");
+  const Bytes bytes = test::read_bytes(
+      test::source_path("tests/data/solids/facets_that_share_a_triangle.city.json"));
   const auto document = formats::read_document(bytes, Format::city_json);
   REQUIRE(document);
   REQUIRE(document->features.at(0).solids.size() == 1);

@@ -18,7 +18,7 @@ using formats::Surfaces;
 using pipeline::InspectedFeature;
 using pipeline::InspectedSolid;
 
-const std::string kFile = std::string(WATERTIGHT_TEST_DATA) + "/cityjson/surfaces.city.json";
+const std::string kFile = test::source_path("tests/data/cityjson/surfaces.city.json");
 
 Document read(Surfaces surfaces, bool is_split = true) {
   formats::ReadOptions options;

@@ -22,12 +22,12 @@ class ConversionRoutes : public samples::RoutesFixture {
 constexpr const char* kGml = "application/gml+xml";
 
 std::string golden(const std::string& name) {
-  return test::read_text(std::string(WATERTIGHT_SOURCES) + "/tests/golden/findings/" + name);
+  return test::read_text(test::source_path("tests/golden/findings/") + name);
 }
 
 TEST_CASE_METHOD(ConversionRoutes,
                  "an encoded document is decoded byte for byte, whatever its format") {
-  const std::string city = test::read_text(WATERTIGHT_SOURCES "/examples/delft.city.jsonl");
+  const std::string city = test::read_text(test::source_path("examples/delft.city.jsonl"));
   for (const auto& [text, type] : {std::pair{city, "application/city+json-seq"},
                                    std::pair{golden("102.city.json"), "application/city+json"},
                                    std::pair{golden("103.gml"), kGml}}) {

@@ -18,7 +18,7 @@ class ReportRoutes : public samples::RoutesFixture {
  public:
   ReportRoutes() {
     REQUIRE(post("/collections/town/items?invalid=keep",
-                 test::read_text(WATERTIGHT_SOURCES "/examples/invalid.city.jsonl"))
+                 test::read_text(test::source_path("examples/invalid.city.jsonl")))
                 .status == 201);
   }
   Json report(const std::string& query) const {

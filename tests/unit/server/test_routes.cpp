@@ -322,7 +322,7 @@ TEST_CASE("the server's own words about a failure are for the log alone") {
 
 TEST_CASE_METHOD(Fixture, "surfaces are checked, judged, taken for solids or ignored") {
   const std::string city =
-      test::read_text(std::string(WATERTIGHT_TEST_DATA) + "/cityjson/surfaces.city.json");
+      test::read_text(test::source_path("tests/data/cityjson/surfaces.city.json"));
   const auto validate = [&](const std::string& query) {
     const server::Response response = post("/validate" + query, city, "application/city+json");
     REQUIRE(response.status == 200);

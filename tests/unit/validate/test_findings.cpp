@@ -21,7 +21,7 @@ using namespace watertight::test;
 
 namespace {
 
-const std::filesystem::path kRoot = std::filesystem::path(WATERTIGHT_TEST_DATA) / ".." / "..";
+const std::filesystem::path kRoot = test::source_path("");
 const std::filesystem::path kSamples = kRoot / "tests" / "golden" / "findings";
 
 struct Sample {

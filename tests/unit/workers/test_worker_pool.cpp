@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/files.h"
 #include "workers/worker_pool.h"
 
 namespace watertight {
@@ -24,7 +25,7 @@ namespace {
 
 workers::WorkerPool::Options faulty(std::size_t size = 1) {
   workers::WorkerPool::Options options;
-  options.executable = FAULTY_WORKER;
+  options.executable = test::program_path("faulty_worker");
   options.size = size;
   return options;
 }
@@ -477,11 +478,12 @@ TEST_CASE("a worker started by a thread that ended keeps working") {
 }
 
 TEST_CASE("a helper is found in the named folder first") {
-  const std::string folder = std::filesystem::path(FAULTY_WORKER).parent_path().string();
+  const std::string folder =
+      std::filesystem::path(test::program_path("faulty_worker")).parent_path().string();
   setenv("WATERTIGHT_LIBEXEC", folder.c_str(), 1);
   const Result<std::string> found = workers::find_helper("faulty_worker");
   REQUIRE(found.has_value());
-  CHECK(*found == FAULTY_WORKER);
+  CHECK(*found == test::program_path("faulty_worker"));
   unsetenv("WATERTIGHT_LIBEXEC");
   const Result<std::string> missing = workers::find_helper("no-such-helper");
   REQUIRE_FALSE(missing.has_value());

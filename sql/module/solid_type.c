@@ -89,7 +89,7 @@ is_hexadecimal(const char *text, size_t length)
 	return length > 0 && length % 2 == 0 && strspn(text, "0123456789abcdefABCDEF") == length;
 }
 
-/* Reads a blob or EWKB in hexadecimal digits, or WKT. */
+/* Reads a blob or EWKB in hexadecimal digits (after \x, as bytea is written, or without), or WKT. */
 PG_FUNCTION_INFO_V1(wt_solid_in);
 Datum
 wt_solid_in(PG_FUNCTION_ARGS)
@@ -97,20 +97,27 @@ wt_solid_in(PG_FUNCTION_ARGS)
 	char	   *text = PG_GETARG_CSTRING(0);
 	size_t		length;
 	char	   *bytes;
+	bool		is_bytea;
 
 	text += strspn(text, " \t\r\n");
 	length = strlen(text);
 	while (length > 0 && strchr(" \t\r\n", text[length - 1]) != NULL)
 		--length;
 	text = pnstrdup(text, length);
-	if (!is_hexadecimal(text, length))
+	is_bytea = strncmp(text, "\\x", 2) == 0;
+	if (is_bytea)
+	{
+		text += 2;
+		length -= 2;
+	}
+	if (!is_bytea && !is_hexadecimal(text, length))
 	{
 		text = pg_server_to_any(text, (int) length, PG_UTF8);
 		return value_of(wt_bridge_solid_of_wkt, text, strlen(text), NULL);
 	}
-	bytes = palloc(length / 2);
-	(void) hex_decode(text, length, bytes);
-	return value_of(wt_bridge_solid, bytes, length / 2, NULL);
+	bytes = palloc(length / 2 + 1);
+	length = hex_decode(text, length, bytes);
+	return value_of(wt_bridge_solid, bytes, length, NULL);
 }
 
 /* The blob in hexadecimal digits: nothing is lost. */

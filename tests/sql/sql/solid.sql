@@ -14,6 +14,12 @@ SELECT name, shape::text = encode(wt_encode(ewkb), 'hex') AS blob,
        wt_solid_rules(shape) = wt_rules_of(shape::bytea) AS rules
 FROM town JOIN solids USING (name) ORDER BY name;
 
+-- Bytes are read as PostgreSQL writes them, too.
+SELECT bool_and(ewkb::text::solid = shape AND (shape::bytea)::text::solid = shape) AS is_same FROM town JOIN solids USING (name);
+SELECT '\x5'::solid;
+SELECT '\x5g'::solid;
+SELECT '\x'::solid;
+
 -- Rules stay with the value, and come back with it.
 SELECT wt_solid_rules(warped)->>'planarity' AS planarity, wt_solid_rules(warped::text::solid)->>'planarity' AS again
 FROM (SELECT wt_solid(ewkb, '{"planarity": 0.5, "proof": "boundary"}') AS warped FROM solids WHERE name = 'cube') AS one;

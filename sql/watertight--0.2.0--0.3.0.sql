@@ -12,9 +12,12 @@ CREATE FUNCTION wt_solid_recv(internal) RETURNS solid
   AS 'MODULE_PATHNAME', 'wt_solid_recv' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
 CREATE FUNCTION wt_solid_send(solid) RETURNS bytea
   AS 'MODULE_PATHNAME', 'wt_solid_blob' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 2;
+CREATE FUNCTION wt_solid_analyze(internal) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_solid_analyze' LANGUAGE C STRICT;
+COMMENT ON FUNCTION wt_solid_analyze(internal) IS 'makes ANALYZE keep where the boxes of a column are';
 -- Blobs are compressed already, so values that are too long for a row are moved out as they are.
 CREATE TYPE solid (INPUT = wt_solid_in, OUTPUT = wt_solid_out, RECEIVE = wt_solid_recv, SEND = wt_solid_send,
-  INTERNALLENGTH = variable, ALIGNMENT = int4, STORAGE = external);
+  ANALYZE = wt_solid_analyze, INTERNALLENGTH = variable, ALIGNMENT = int4, STORAGE = external);
 COMMENT ON TYPE solid IS
   'a valid closed solid: text is its blob in hexadecimal digits; reads blobs, EWKB and WKT, and refuses what is invalid';
 COMMENT ON FUNCTION wt_solid_in(cstring) IS 'solid of a blob or EWKB in hexadecimal digits, or of WKT';
@@ -332,18 +335,36 @@ COMMENT ON FUNCTION wt_box_within(solid, solid) IS 'implementation of the operat
 COMMENT ON FUNCTION wt_box_within(solid, wt_box) IS 'implementation of the operator <@';
 COMMENT ON FUNCTION wt_box_distance(solid, solid) IS 'implementation of the operator <->';
 COMMENT ON FUNCTION wt_box_distance(solid, wt_box) IS 'implementation of the operator <->';
+CREATE FUNCTION wt_box_overlaps_sel(internal, oid, internal, integer) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_overlaps_sel' LANGUAGE C STABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_overlaps_joinsel(internal, oid, internal, smallint, internal) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_overlaps_joinsel' LANGUAGE C STABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_contains_sel(internal, oid, internal, integer) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_contains_sel' LANGUAGE C STABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_contains_joinsel(internal, oid, internal, smallint, internal) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_contains_joinsel' LANGUAGE C STABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_within_sel(internal, oid, internal, integer) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_within_sel' LANGUAGE C STABLE STRICT PARALLEL SAFE;
+CREATE FUNCTION wt_box_within_joinsel(internal, oid, internal, smallint, internal) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_within_joinsel' LANGUAGE C STABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box_overlaps_sel(internal, oid, internal, integer) IS 'estimate of the rows that && selects';
+COMMENT ON FUNCTION wt_box_overlaps_joinsel(internal, oid, internal, smallint, internal) IS 'estimate of the pairs that && joins';
+COMMENT ON FUNCTION wt_box_contains_sel(internal, oid, internal, integer) IS 'estimate of the rows that @> selects';
+COMMENT ON FUNCTION wt_box_contains_joinsel(internal, oid, internal, smallint, internal) IS 'estimate of the pairs that @> joins';
+COMMENT ON FUNCTION wt_box_within_sel(internal, oid, internal, integer) IS 'estimate of the rows that <@ selects';
+COMMENT ON FUNCTION wt_box_within_joinsel(internal, oid, internal, smallint, internal) IS 'estimate of the pairs that <@ joins';
 CREATE OPERATOR && (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_boxes_overlap, COMMUTATOR = &&,
-  RESTRICT = areasel, JOIN = areajoinsel);
+  RESTRICT = wt_box_overlaps_sel, JOIN = wt_box_overlaps_joinsel);
 CREATE OPERATOR && (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_boxes_overlap,
-  RESTRICT = areasel, JOIN = areajoinsel);
+  RESTRICT = wt_box_overlaps_sel, JOIN = wt_box_overlaps_joinsel);
 CREATE OPERATOR @> (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_contains, COMMUTATOR = <@,
-  RESTRICT = contsel, JOIN = contjoinsel);
+  RESTRICT = wt_box_contains_sel, JOIN = wt_box_contains_joinsel);
 CREATE OPERATOR @> (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_contains,
-  RESTRICT = contsel, JOIN = contjoinsel);
+  RESTRICT = wt_box_contains_sel, JOIN = wt_box_contains_joinsel);
 CREATE OPERATOR <@ (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_within, COMMUTATOR = @>,
-  RESTRICT = contsel, JOIN = contjoinsel);
+  RESTRICT = wt_box_within_sel, JOIN = wt_box_within_joinsel);
 CREATE OPERATOR <@ (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_within,
-  RESTRICT = contsel, JOIN = contjoinsel);
+  RESTRICT = wt_box_within_sel, JOIN = wt_box_within_joinsel);
 CREATE OPERATOR <-> (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_distance, COMMUTATOR = <->);
 CREATE OPERATOR <-> (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_distance);
 COMMENT ON OPERATOR && (solid, solid) IS 'the boxes have a point in common';

@@ -24,6 +24,47 @@ SET enable_bitmapscan = off;
 SELECT question, answer IS NOT NULL AND answer = (SELECT answer FROM by_index b WHERE b.question = a.question) AS same FROM answers() a;
 RESET enable_indexscan;
 RESET enable_bitmapscan;
+-- After ANALYZE, estimates of rows are near the numbers of rows, also where towns are far apart.
+CREATE FUNCTION is_near(query text) RETURNS boolean LANGUAGE plpgsql AS $$
+DECLARE
+  plan json;
+  estimated float8;
+  counted bigint;
+BEGIN
+  EXECUTE 'EXPLAIN (FORMAT JSON) ' || query INTO plan;
+  estimated := (plan->0->'Plan'->>'Plan Rows')::float8;
+  EXECUTE 'SELECT count(*) FROM (' || query || ') AS q' INTO counted;
+  IF estimated NOT BETWEEN counted / 2.0 AND greatest(counted, 1) * 2.0 THEN
+    RAISE NOTICE '% rows are estimated, there are %', estimated, counted;
+    RETURN false;
+  END IF;
+  RETURN true;
+END $$;
+CREATE TABLE towns AS
+  SELECT i, wt_translate(shape, i % 3 * 1e6, 0, i % 3 * 1000) AS shape FROM field UNION ALL SELECT -i, NULL FROM field WHERE i <= 1000;
+CREATE TABLE moved AS
+  SELECT wt_translate(shape, abs(hashint4(i) % 1000), abs(hashint4(-i) % 1000), 0) AS shape FROM field WHERE i % 3 = 0;
+ANALYZE towns, moved;
+SELECT query, is_near('SELECT FROM towns AS a ' || query) FROM unnest(ARRAY[
+  'WHERE shape && wt_box(0, 0, 0, 200, 200, 100)',
+  'WHERE shape && wt_box(1e6, 0, 0, 1.001e6, 1000, 2000)',
+  'WHERE shape && wt_box(1.0001e6, 500, 1000, 1.0003e6, 600, 1002)',
+  'WHERE shape && wt_box(5e5, 0, 0, 6e5, 1000, 2000)',
+  'WHERE shape && wt_box(2e6, 0, 0, 2.0005e6, 500, 1000)',
+  'WHERE shape <@ wt_box(2e6, 0, 0, 2.0005e6, 500, 3000)',
+  'WHERE shape <@ wt_box(2e6, 0, 0, 2.0005e6, 500, 1999)',
+  'WHERE shape @> wt_box(1, 1, 0, 900, 900, 1)',
+  'WHERE shape && NULL::wt_box',
+  'WHERE shape && (SELECT shape FROM towns WHERE i = 1)',
+  'JOIN moved AS b ON a.shape && b.shape']) AS query;
+SELECT is_near(format('SELECT FROM towns WHERE shape && %L::solid', (SELECT shape FROM towns WHERE i = 5))) AS near_a_solid;
+CREATE TABLE little AS SELECT shape FROM towns WHERE i = 1;
+ANALYZE little;
+SELECT is_near('SELECT FROM little WHERE shape && wt_box(0, 0, 0, 1e5, 1e5, 1e5)') AS one_row;
+UPDATE little SET shape = NULL;
+ANALYZE little;
+SELECT is_near('SELECT FROM little WHERE shape && wt_box(0, 0, 0, 1e5, 1e5, 1e5)') AS no_solid;
+DROP TABLE little, moved, towns;
 -- Rows that come and go.
 DELETE FROM field WHERE i % 3 = 0;
 INSERT INTO field SELECT i + 10000, shape FROM field WHERE i % 5 = 0;

@@ -335,6 +335,30 @@ COMMENT ON FUNCTION wt_box_within(solid, solid) IS 'implementation of the operat
 COMMENT ON FUNCTION wt_box_within(solid, wt_box) IS 'implementation of the operator <@';
 COMMENT ON FUNCTION wt_box_distance(solid, solid) IS 'implementation of the operator <->';
 COMMENT ON FUNCTION wt_box_distance(solid, wt_box) IS 'implementation of the operator <->';
+CREATE FUNCTION wt_boxes_overlap(wt_box, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_box_overlaps_of_box_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_boxes_overlap(wt_box, solid) IS 'implementation of the operator &&';
+CREATE FUNCTION wt_boxes_overlap(wt_box, wt_box) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_box_overlaps_of_box_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_boxes_overlap(wt_box, wt_box) IS 'implementation of the operator &&';
+CREATE FUNCTION wt_box_contains(wt_box, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_box_contains_of_box_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box_contains(wt_box, solid) IS 'implementation of the operator @>';
+CREATE FUNCTION wt_box_contains(wt_box, wt_box) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_box_contains_of_box_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box_contains(wt_box, wt_box) IS 'implementation of the operator @>';
+CREATE FUNCTION wt_box_within(wt_box, solid) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_box_within_of_box_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box_within(wt_box, solid) IS 'implementation of the operator <@';
+CREATE FUNCTION wt_box_within(wt_box, wt_box) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_box_within_of_box_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box_within(wt_box, wt_box) IS 'implementation of the operator <@';
+CREATE FUNCTION wt_box_distance(wt_box, solid) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_distance_of_box_solid' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box_distance(wt_box, solid) IS 'implementation of the operator <->';
+CREATE FUNCTION wt_box_distance(wt_box, wt_box) RETURNS float8
+  AS 'MODULE_PATHNAME', 'wt_box_distance_of_box_box' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_box_distance(wt_box, wt_box) IS 'implementation of the operator <->';
 CREATE FUNCTION wt_box_overlaps_sel(internal, oid, internal, integer) RETURNS float8
   AS 'MODULE_PATHNAME', 'wt_box_overlaps_sel' LANGUAGE C STABLE STRICT PARALLEL SAFE;
 CREATE FUNCTION wt_box_overlaps_joinsel(internal, oid, internal, smallint, internal) RETURNS float8
@@ -355,18 +379,32 @@ COMMENT ON FUNCTION wt_box_within_sel(internal, oid, internal, integer) IS 'esti
 COMMENT ON FUNCTION wt_box_within_joinsel(internal, oid, internal, smallint, internal) IS 'estimate of the pairs that <@ joins';
 CREATE OPERATOR && (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_boxes_overlap, COMMUTATOR = &&,
   RESTRICT = wt_box_overlaps_sel, JOIN = wt_box_overlaps_joinsel);
-CREATE OPERATOR && (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_boxes_overlap,
+CREATE OPERATOR && (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_boxes_overlap, COMMUTATOR = &&,
   RESTRICT = wt_box_overlaps_sel, JOIN = wt_box_overlaps_joinsel);
 CREATE OPERATOR @> (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_contains, COMMUTATOR = <@,
   RESTRICT = wt_box_contains_sel, JOIN = wt_box_contains_joinsel);
-CREATE OPERATOR @> (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_contains,
+CREATE OPERATOR @> (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_contains, COMMUTATOR = <@,
   RESTRICT = wt_box_contains_sel, JOIN = wt_box_contains_joinsel);
 CREATE OPERATOR <@ (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_within, COMMUTATOR = @>,
   RESTRICT = wt_box_within_sel, JOIN = wt_box_within_joinsel);
-CREATE OPERATOR <@ (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_within,
+CREATE OPERATOR <@ (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_within, COMMUTATOR = @>,
   RESTRICT = wt_box_within_sel, JOIN = wt_box_within_joinsel);
 CREATE OPERATOR <-> (LEFTARG = solid, RIGHTARG = solid, FUNCTION = wt_box_distance, COMMUTATOR = <->);
-CREATE OPERATOR <-> (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_distance);
+CREATE OPERATOR <-> (LEFTARG = solid, RIGHTARG = wt_box, FUNCTION = wt_box_distance, COMMUTATOR = <->);
+CREATE OPERATOR && (LEFTARG = wt_box, RIGHTARG = solid, FUNCTION = wt_boxes_overlap, COMMUTATOR = &&,
+  RESTRICT = wt_box_overlaps_sel, JOIN = wt_box_overlaps_joinsel);
+CREATE OPERATOR && (LEFTARG = wt_box, RIGHTARG = wt_box, FUNCTION = wt_boxes_overlap, COMMUTATOR = &&,
+  RESTRICT = wt_box_overlaps_sel, JOIN = wt_box_overlaps_joinsel);
+CREATE OPERATOR @> (LEFTARG = wt_box, RIGHTARG = solid, FUNCTION = wt_box_contains, COMMUTATOR = <@,
+  RESTRICT = wt_box_contains_sel, JOIN = wt_box_contains_joinsel);
+CREATE OPERATOR @> (LEFTARG = wt_box, RIGHTARG = wt_box, FUNCTION = wt_box_contains, COMMUTATOR = <@,
+  RESTRICT = wt_box_contains_sel, JOIN = wt_box_contains_joinsel);
+CREATE OPERATOR <@ (LEFTARG = wt_box, RIGHTARG = solid, FUNCTION = wt_box_within, COMMUTATOR = @>,
+  RESTRICT = wt_box_within_sel, JOIN = wt_box_within_joinsel);
+CREATE OPERATOR <@ (LEFTARG = wt_box, RIGHTARG = wt_box, FUNCTION = wt_box_within, COMMUTATOR = @>,
+  RESTRICT = wt_box_within_sel, JOIN = wt_box_within_joinsel);
+CREATE OPERATOR <-> (LEFTARG = wt_box, RIGHTARG = solid, FUNCTION = wt_box_distance, COMMUTATOR = <->);
+CREATE OPERATOR <-> (LEFTARG = wt_box, RIGHTARG = wt_box, FUNCTION = wt_box_distance, COMMUTATOR = <->);
 COMMENT ON OPERATOR && (solid, solid) IS 'the boxes have a point in common';
 COMMENT ON OPERATOR && (solid, wt_box) IS 'the boxes have a point in common';
 COMMENT ON OPERATOR @> (solid, solid) IS 'the left box contains the right one';
@@ -375,6 +413,14 @@ COMMENT ON OPERATOR <@ (solid, solid) IS 'the left box is within the right one';
 COMMENT ON OPERATOR <@ (solid, wt_box) IS 'the left box is within the right one';
 COMMENT ON OPERATOR <-> (solid, solid) IS 'distance of the boxes';
 COMMENT ON OPERATOR <-> (solid, wt_box) IS 'distance of the boxes';
+COMMENT ON OPERATOR && (wt_box, solid) IS 'the boxes have a point in common';
+COMMENT ON OPERATOR && (wt_box, wt_box) IS 'the boxes have a point in common';
+COMMENT ON OPERATOR @> (wt_box, solid) IS 'the left box contains the right one';
+COMMENT ON OPERATOR @> (wt_box, wt_box) IS 'the left box contains the right one';
+COMMENT ON OPERATOR <@ (wt_box, solid) IS 'the left box is within the right one';
+COMMENT ON OPERATOR <@ (wt_box, wt_box) IS 'the left box is within the right one';
+COMMENT ON OPERATOR <-> (wt_box, solid) IS 'distance of the boxes';
+COMMENT ON OPERATOR <-> (wt_box, wt_box) IS 'distance of the boxes';
 
 CREATE FUNCTION wt_gist_consistent(internal, solid, smallint, oid, internal) RETURNS boolean
   AS 'MODULE_PATHNAME', 'wt_gist_consistent' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
@@ -420,3 +466,18 @@ COMMENT ON FUNCTION wt_box_extend(wt_box, solid) IS 'box around a box and that o
 COMMENT ON FUNCTION wt_box_union(wt_box, wt_box) IS 'box around two boxes';
 CREATE AGGREGATE wt_extent(solid) (SFUNC = wt_box_extend, STYPE = wt_box, COMBINEFUNC = wt_box_union, PARALLEL = safe);
 COMMENT ON AGGREGATE wt_extent(solid) IS 'box around the boxes of solids';
+
+-- BRIN keeps one box for a range of pages: for tables in the order of places, as exports and files are.
+CREATE FUNCTION wt_brin_add(internal, internal, internal, internal) RETURNS boolean
+  AS 'MODULE_PATHNAME', 'wt_box_brin_add' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE;
+COMMENT ON FUNCTION wt_brin_add(internal, internal, internal, internal) IS 'for the index on ranges of pages';
+CREATE OPERATOR CLASS solid_range_ops DEFAULT FOR TYPE solid USING brin AS
+  OPERATOR 3 && (solid, solid), OPERATOR 3 && (solid, wt_box), OPERATOR 3 && (wt_box, solid), OPERATOR 3 && (wt_box, wt_box),
+  OPERATOR 7 @> (solid, solid), OPERATOR 7 @> (solid, wt_box), OPERATOR 7 @> (wt_box, solid), OPERATOR 7 @> (wt_box, wt_box),
+  OPERATOR 8 <@ (solid, solid), OPERATOR 8 <@ (solid, wt_box), OPERATOR 8 <@ (wt_box, solid), OPERATOR 8 <@ (wt_box, wt_box),
+  FUNCTION 1 brin_inclusion_opcinfo(internal),
+  FUNCTION 2 wt_brin_add(internal, internal, internal, internal),
+  FUNCTION 3 brin_inclusion_consistent(internal, internal, internal),
+  FUNCTION 4 brin_inclusion_union(internal, internal, internal),
+  FUNCTION 11 wt_box_union(wt_box, wt_box),
+  STORAGE wt_box;

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * The operator class by which GiST finds solids by their boxes. Keys are boxes (`wt_box`); those of
- * leaves are the boxes in the values, so that nothing is looked at twice.
+ * The operator classes by which GiST and BRIN find solids by their boxes. Keys are boxes (`wt_box`).
+ * Those of GiST's leaves are the boxes in the values, so that nothing is looked at twice; that of
+ * BRIN is around all solids of a range of pages.
  */
 #include "postgres.h"
 
 #include <math.h>
 
+#include "access/brin_internal.h"
+#include "access/brin_tuple.h"
 #include "access/gist.h"
 #include "access/stratnum.h"
 #include "fmgr.h"
@@ -231,4 +234,36 @@ wt_gist_picksplit(PG_FUNCTION_ARGS)
 	split->spl_ldatum = PointerGetDatum(left);
 	split->spl_rdatum = PointerGetDatum(right);
 	PG_RETURN_POINTER(split);
+}
+
+/* What BRIN's inclusion classes keep of a range of pages: PostgreSQL's functions read it. */
+#define RANGE_BOX 0
+#define RANGE_IS_UNMERGEABLE 1
+#define RANGE_HAS_EMPTY 2
+
+/* Makes the box of a range hold a solid; whether it became larger. */
+PG_FUNCTION_INFO_V1(wt_box_brin_add);
+Datum
+wt_box_brin_add(PG_FUNCTION_ARGS)
+{
+	BrinValues *range = (BrinValues *) PG_GETARG_POINTER(1);
+	SolidBox   *kept;
+	SolidBox	box;
+
+	box = box_of_solid(PG_GETARG_DATUM(2));
+	if (range->bv_allnulls)
+	{
+		kept = palloc(sizeof(SolidBox));
+		*kept = box;
+		range->bv_values[RANGE_BOX] = PointerGetDatum(kept);
+		range->bv_values[RANGE_IS_UNMERGEABLE] = BoolGetDatum(false);
+		range->bv_values[RANGE_HAS_EMPTY] = BoolGetDatum(false);
+		range->bv_allnulls = false;
+		PG_RETURN_BOOL(true);
+	}
+	kept = (SolidBox *) DatumGetPointer(range->bv_values[RANGE_BOX]);
+	if (box_contains(kept, &box))
+		PG_RETURN_BOOL(false);
+	extend_box(kept, &box);
+	PG_RETURN_BOOL(true);
 }

@@ -224,27 +224,27 @@ wt_solid_box(PG_FUNCTION_ARGS)
 	PG_RETURN_POINTER(box);
 }
 
-/* Relations of the boxes of two solids, and of that of a solid and a box. */
+/* Relations of the boxes of two solids, of that of a solid and a box, and of boxes. */
 
-#define RELATION(name, type, result) \
-	PG_FUNCTION_INFO_V1(name##_solid); \
+#define BOX_OF_SOLID(number) box_of_solid(PG_GETARG_DATUM(number))
+#define BOX(number) (*(const SolidBox *) PG_GETARG_POINTER(number))
+
+#define RELATION_OF(name, type, result, left_box, right_box) \
+	PG_FUNCTION_INFO_V1(name); \
 	Datum \
-	name##_solid(PG_FUNCTION_ARGS) \
+	name(PG_FUNCTION_ARGS) \
 	{ \
-		const SolidBox left = box_of_solid(PG_GETARG_DATUM(0)); \
-		const SolidBox right = box_of_solid(PG_GETARG_DATUM(1)); \
-\
-		PG_RETURN_##type(result); \
-	} \
-	PG_FUNCTION_INFO_V1(name##_box); \
-	Datum \
-	name##_box(PG_FUNCTION_ARGS) \
-	{ \
-		const SolidBox left = box_of_solid(PG_GETARG_DATUM(0)); \
-		const SolidBox right = *(const SolidBox *) PG_GETARG_POINTER(1); \
+		const SolidBox left = left_box(0); \
+		const SolidBox right = right_box(1); \
 \
 		PG_RETURN_##type(result); \
 	}
+
+#define RELATION(name, type, result) \
+	RELATION_OF(name##_solid, type, result, BOX_OF_SOLID, BOX_OF_SOLID) \
+	RELATION_OF(name##_box, type, result, BOX_OF_SOLID, BOX) \
+	RELATION_OF(name##_of_box_solid, type, result, BOX, BOX_OF_SOLID) \
+	RELATION_OF(name##_of_box_box, type, result, BOX, BOX)
 
 RELATION(wt_box_overlaps, BOOL, boxes_overlap(&left, &right))
 RELATION(wt_box_contains, BOOL, box_contains(&left, &right))

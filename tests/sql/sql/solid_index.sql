@@ -24,6 +24,31 @@ SET enable_bitmapscan = off;
 SELECT question, answer IS NOT NULL AND answer = (SELECT answer FROM by_index b WHERE b.question = a.question) AS same FROM answers() a;
 RESET enable_indexscan;
 RESET enable_bitmapscan;
+-- A box on the left, and an index on ranges of pages, give the same.
+SELECT count(*) AS different FROM windows w JOIN field f ON true
+WHERE ((f.shape && w.box) <> (w.box && f.shape)) OR ((f.shape @> w.box) <> (w.box <@ f.shape)) OR ((f.shape <@ w.box) <> (w.box @> f.shape))
+  OR ((f.shape <-> w.box) <> (w.box <-> f.shape)) OR ((f.shape && w.box) <> (wt_bbox(f.shape) && w.box))
+  OR ((f.shape @> w.box) <> (wt_bbox(f.shape) @> w.box)) OR ((f.shape <@ w.box) <> (wt_bbox(f.shape) <@ w.box))
+  OR ((f.shape <-> w.box) <> (wt_bbox(f.shape) <-> w.box));
+SET enable_seqscan = off;
+EXPLAIN (COSTS OFF) SELECT i FROM field WHERE 'BOX3D(0 0 0,50 50 5)'::wt_box && shape;
+CREATE TABLE sorted AS SELECT i, shape FROM field UNION ALL SELECT i + 10000, NULL FROM field WHERE i < 50 ORDER BY 1;
+CREATE INDEX sorted_range ON sorted USING brin (shape) WITH (pages_per_range = 2);
+INSERT INTO sorted SELECT i + 3000, shape FROM field WHERE i % 3 = 0;
+EXPLAIN (COSTS OFF) SELECT i FROM sorted WHERE shape && 'BOX3D(0 0 0,50 50 5)'::wt_box;
+CREATE TABLE by_range AS
+  SELECT w.i AS w, f.i, kind FROM windows w, unnest('{&&,@>,<@}'::text[]) AS kind, LATERAL (
+    SELECT i FROM sorted WHERE kind = '&&' AND shape && w.box
+    UNION ALL SELECT i FROM sorted WHERE kind = '@>' AND shape @> wt_box(wt_bound(w.box, 1), wt_bound(w.box, 2), 0, wt_bound(w.box, 1), wt_bound(w.box, 2), 0)
+    UNION ALL SELECT i FROM sorted WHERE kind = '<@' AND shape <@ w.box) AS f;
+DROP INDEX sorted_range;
+RESET enable_seqscan;
+SELECT kind, count(*) > 0 AS some, bool_and(CASE kind WHEN '&&' THEN shape && box WHEN '<@' THEN shape <@ box
+    ELSE shape @> wt_box(wt_bound(box, 1), wt_bound(box, 2), 0, wt_bound(box, 1), wt_bound(box, 2), 0) END) AS right,
+  count(*) = (SELECT count(*) FROM windows w JOIN sorted s ON CASE kind WHEN '&&' THEN shape && box WHEN '<@' THEN shape <@ box
+    ELSE shape @> wt_box(wt_bound(box, 1), wt_bound(box, 2), 0, wt_bound(box, 1), wt_bound(box, 2), 0) END) AS all
+FROM by_range r JOIN windows w ON w.i = r.w JOIN sorted s ON s.i = r.i GROUP BY kind ORDER BY kind;
+DROP TABLE sorted, by_range;
 -- After ANALYZE, estimates of rows are near the numbers of rows, also where towns are far apart.
 CREATE FUNCTION is_near(query text) RETURNS boolean LANGUAGE plpgsql AS $$
 DECLARE

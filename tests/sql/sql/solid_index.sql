@@ -25,7 +25,7 @@ SELECT question, answer IS NOT NULL AND answer = (SELECT answer FROM by_index b 
 RESET enable_indexscan;
 RESET enable_bitmapscan;
 -- A box on the left, and an index on ranges of pages, give the same.
-SELECT count(*) AS different FROM windows w JOIN field f ON true
+SELECT count(*) AS different FROM windows w JOIN field f ON f.i <= 400
 WHERE ((f.shape && w.box) <> (w.box && f.shape)) OR ((f.shape @> w.box) <> (w.box <@ f.shape)) OR ((f.shape <@ w.box) <> (w.box @> f.shape))
   OR ((f.shape <-> w.box) <> (w.box <-> f.shape)) OR ((f.shape && w.box) <> (wt_bbox(f.shape) && w.box))
   OR ((f.shape @> w.box) <> (wt_bbox(f.shape) @> w.box)) OR ((f.shape <@ w.box) <> (wt_bbox(f.shape) <@ w.box))

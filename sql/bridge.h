@@ -124,6 +124,13 @@ void wt_bridge_translate(const wt_job* job, const double way[3],
  *  first, rounded to 0.0001 units or 1e-9 degrees; z as it is. It is judged as a new solid, by the
  *  rules that the blob states. Fails with 0A000 where PROJ has no way from one to the other. */
 void wt_bridge_transform(const wt_job* job, uint32_t srid, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers a blob with the values of the parts of its solid between two heights, in no special
+ *  order: four bytes with the size of a value before each. New corners are rounded
+ *  (tessellate/clip_z.h); each part is judged as a new solid, by the rules that the blob states.
+ *  Where the rest of a facet is too bent, the facets that are cut become triangles. Fails with
+ *  22023 where a part is not valid all the same. */
+void wt_bridge_clip_z(const wt_job* job, double low, double high,
+                      wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with WKT, UTF-8. */
 void wt_bridge_wkt(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers a blob with an OBJ document; facets with holes are triangles there. Fails with 0A000 for

@@ -120,6 +120,10 @@ CREATE FUNCTION wt_translate(solid solid, x float8, y float8, z float8) RETURNS 
   AS 'MODULE_PATHNAME', 'wt_solid_translate' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 1000;
 COMMENT ON FUNCTION wt_translate(solid, float8, float8, float8) IS
   'the solid moved, without rounding; an error where its coordinates would have to be rounded';
+CREATE FUNCTION wt_clip_z(solid solid, low float8, high float8) RETURNS solid[]
+  AS 'MODULE_PATHNAME', 'wt_solid_clip_z' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 10000;
+COMMENT ON FUNCTION wt_clip_z(solid, float8, float8) IS
+  'the parts of a solid between two heights; new corners are rounded, and each part is judged anew';
 CREATE FUNCTION wt_transform(solid solid, srid integer) RETURNS solid
   AS 'MODULE_PATHNAME', 'wt_solid_transform' LANGUAGE C STABLE STRICT PARALLEL SAFE COST 10000;
 COMMENT ON FUNCTION wt_transform(solid, integer) IS

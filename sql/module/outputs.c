@@ -234,6 +234,43 @@ wt_solid_translate(PG_FUNCTION_ARGS)
 	PG_RETURN_DATUM(bytea_of(reply));
 }
 
+/* The parts of a solid between two heights, as an array. */
+PG_FUNCTION_INFO_V1(wt_solid_clip_z);
+Datum
+wt_solid_clip_z(PG_FUNCTION_ARGS)
+{
+	wt_reply   *reply = new_reply();
+	wt_job		blob = job_on_solid(PG_GETARG_DATUM(0));
+	wt_job		job = new_job(blob.bytes, blob.size, NULL, true);
+	double		low = PG_GETARG_FLOAT8(1);
+	double		high = PG_GETARG_FLOAT8(2);
+	Datum	   *parts;
+	int			count = 0;
+
+	if (!(low < high))
+		ereport(ERROR,
+				(errcode(ERRCODE_INVALID_PARAMETER_VALUE),
+				 errmsg("the lower height %g is not below the upper one %g", low, high)));
+	wt_bridge_clip_z(&job, low, high, reply);
+	check_reply(reply);
+	parts = palloc(sizeof(Datum) * (reply->size / sizeof(uint32) + 1));
+	for (size_t at = 0; at < reply->size;)
+	{
+		uint32		size;
+		bytea	   *value;
+
+		memcpy(&size, reply->bytes + at, sizeof(size));
+		value = palloc(VARHDRSZ + size);
+		SET_VARSIZE(value, VARHDRSZ + size);
+		memcpy(VARDATA(value), reply->bytes + at + sizeof(size), size);
+		parts[count++] = PointerGetDatum(value);
+		at += sizeof(size) + size;
+	}
+	wt_reply_clear(reply);
+	PG_RETURN_ARRAYTYPE_P(construct_array(parts, count, get_fn_expr_argtype(fcinfo->flinfo, 0), -1, false,
+										  TYPALIGN_INT));
+}
+
 PG_FUNCTION_INFO_V1(wt_solid_transform);
 Datum
 wt_solid_transform(PG_FUNCTION_ARGS)

@@ -20,6 +20,14 @@ SELECT '\x5'::solid;
 SELECT '\x5g'::solid;
 SELECT '\x'::solid;
 
+-- Parts between heights.
+SELECT name, wt_volume(part) AS volume, wt_facet_count(part) AS facets, wt_srid(part) = wt_srid(shape) AS same_srid
+FROM town, unnest(wt_clip_z(shape, 0.25 * wt_bound(wt_bbox(shape), 6) + 0.75 * wt_bound(wt_bbox(shape), 3), 'Infinity')) AS part ORDER BY name;
+SELECT name, cardinality(wt_clip_z(shape, '-Infinity', 'Infinity')) AS all, (wt_clip_z(shape, '-Infinity', 'Infinity'))[1] = shape AS is_same,
+  cardinality(wt_clip_z(shape, 1e6, 2e6)) AS none FROM town ORDER BY name;
+SELECT wt_clip_z(shape, 2, 2) FROM town LIMIT 1;
+SELECT wt_clip_z(shape, 'NaN', 2) FROM town LIMIT 1;
+
 -- Rules stay with the value, and come back with it.
 SELECT wt_solid_rules(warped)->>'planarity' AS planarity, wt_solid_rules(warped::text::solid)->>'planarity' AS again
 FROM (SELECT wt_solid(ewkb, '{"planarity": 0.5, "proof": "boundary"}') AS warped FROM solids WHERE name = 'cube') AS one;

@@ -40,10 +40,7 @@ chmod 0700 "$folder"
 cd "$folder"
 run "$bin/initdb" -D "$folder/data" -N --username=watertight --encoding=UTF8 --no-locale \
   --auth=trust >"$folder/initdb.log" || { cat "$folder/initdb.log"; exit 1; }
-# A module that was built with sanitizers needs their libraries before all others. The server keeps memory
-# until it ends, which is no leak. By hand: tests/sql/run_regress.sh . build/checked
-sanitizers=$(ldd "$build/extension/watertight.so" | awk '/lib(a|ub)san/ { print $3 }' | paste -sd:)
-run env LD_PRELOAD="$sanitizers" ASAN_OPTIONS=detect_leaks=0 "$bin/pg_ctl" -D "$folder/data" -w -s -l "$folder/server.log" \
+run "$bin/pg_ctl" -D "$folder/data" -w -s -l "$folder/server.log" \
   -o "-c listen_addresses= -c unix_socket_directories=$folder/socket -c fsync=off" start ||
   { cat "$folder/server.log"; exit 1; }
 started=yes

@@ -8,6 +8,7 @@ tables of solids, blobs, EWKB (in bytea, compressed by PostgreSQL) beside each o
 and queries. Needs what tests/sql/run_regress.sh needs.
 """
 import argparse
+import json
 import pathlib
 import statistics
 import subprocess
@@ -105,6 +106,9 @@ def measure_queries(server, rows):
     x, y = x - 0.05 * wide, y - 0.05 * deep  # around one of them
     box = f"wt_box({x}, {y}, -1000, {x + 0.1 * wide}, {y + 0.1 * deep}, 10000)"  # a hundredth of the area
     found = server.ask(f"SELECT count(*) FROM town WHERE shape && {box}")
+    say("rows of table town analyzed", f"{server.seconds('ANALYZE town'):9.1f} s")
+    plan = server.ask(f"EXPLAIN (FORMAT JSON) SELECT FROM town WHERE shape && {box}")
+    say("rows in 1 % of the area, estimated", f"{json.loads(plan)[0]['Plan']['Plan Rows']:9} of {found}")
     for what, statement, times in (
             ("one solid by id", f"SELECT shape FROM town WHERE id = {rows // 2}", 200),
             (f"the first 100 of {found} in 1 % of the area", f"SELECT id FROM town WHERE shape && {box} LIMIT 100", 100),
@@ -112,6 +116,12 @@ def measure_queries(server, rows):
             ("the 10 nearest to a place", f"SELECT id FROM town ORDER BY shape <-> wt_box({x}, {y}, 0, {x}, {y}, 0) LIMIT 10", 100)):
         median, most = timed(server, statement, times)
         say(what, f"{median:9.2f} ms, p99 {most:.2f}")
+    server.ask("CREATE TABLE by_place AS SELECT * FROM town ORDER BY floor(wt_bound(wt_box(shape), 1) / 500), wt_bound(wt_box(shape), 2)")
+    elapsed = server.seconds("CREATE INDEX by_range ON by_place USING brin (shape)")
+    size = int(server.ask("SELECT pg_relation_size('by_range')"))
+    say("BRIN index of rows by place", f"{elapsed:9.1f} s, {size / 1e6:.3f} MB")
+    median, most = timed(server, f"SELECT count(*) FROM by_place WHERE shape && {box}", 20)
+    say(f"all {found} in 1 % of the area by it, counted", f"{median:9.2f} ms, p99 {most:.2f}")
     for what, expression in (("volumes and areas", "sum(wt_volume(shape)), sum(wt_area(shape))"), ("facets", "sum(wt_facet_count(shape))"),
                              ("EWKB", "sum(length(wt_as_ewkb(shape)))"), ("exact centres", "count(wt_centroid(shape))"),
                              ("volumes below a height", "sum(wt_volume_below(shape, 3))"), ("boxes without the index", "wt_extent(shape)")):

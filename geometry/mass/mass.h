@@ -16,9 +16,9 @@ namespace watertight::geometry {
 std::array<double, 3> centroid(const Solid& solid, std::span<const Triangle> triangles);
 
 /// The volume of the part of a closed solid below a height in world units, the exact one, rounded
-/// once; the height counts as its shortest decimal, as coordinates do. 0 below the solid, its
-/// volume above it. Requires a finite height. Cost: linear; some microseconds for each triangle
-/// that the height cuts.
+/// once; the height counts as its shortest decimal on a decimal lattice, as coordinates do. 0 below
+/// the solid, its volume above it. Requires a finite height. Cost: linear; some microseconds for
+/// each triangle that the height cuts.
 double volume_below(const Solid& solid, std::span<const Triangle> triangles, double height);
 
 /// +1 if a place in world units is inside a closed solid, 0 if on its boundary, -1 if outside. The

@@ -3,8 +3,8 @@
 """Compares measures of SQL with those of exact fractions: exact_measures.py < ROWS
 
 A row of tab-separated columns is a solid: hexadecimal EWKB, the kind of its lattice, then as SQL gave them the volume,
-the area, the centre of mass as {x,y,z}, a height and the volume below it. Coordinates count as the shortest decimals of their
-doubles on a decimal lattice, and as the doubles on others. A solid is
+the area, the centre of mass as {x,y,z}, a height and the volume below it. Coordinates and the height count as the shortest decimals
+of their doubles on a decimal lattice, and as the doubles on others. A solid is
 compared if each of its facets lies in a plane exactly (else the triangles of a facet decide, which are not known
 here) and has one ring. Volumes come from fans of triangles; the part below a height from prisms under those, cut by the
 height one by one. The area is a sum of square roots, each cut off after 600 binary digits. Prints the number of solids; exit code 1 after a difference.
@@ -127,7 +127,7 @@ def main():
             continue
         count += 1
         rings = [facet[0] for facet in facets]
-        exact = measures(rings, Fraction(height))
+        exact = measures(rings, Fraction(height) if lattice == "decimal" else Fraction(float(height)))
         wanted = [float(exact[0]), float(area(rings)), *map(float, exact[1]), float(exact[2])]
         got = [float(volume), float(surface), *map(float, centre.strip("{}").split(",")), float(below)]
         if wanted != got:

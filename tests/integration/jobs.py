@@ -194,8 +194,9 @@ class Uploader(threading.Thread):
         self.states = {}  # by name: the id and the last status of the job
 
     def persistently(self, ask):
-        """What `ask` returns, again until it does; nothing after a minute."""
-        end = time.monotonic() + 60
+        """What `ask` returns, again until it does; nothing after five minutes. A job waits for others, and each
+        begins anew after a kill; with sanitizers its hard solid takes 15 s."""
+        end = time.monotonic() + 300
         while time.monotonic() < end:
             try:
                 answer = ask()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Uploads files to a running service as jobs: jobs.py WATERTIGHT EXAMPLES [--rounds N] [--seed S]
+"""Uploads files to a running service as jobs: jobs.py WATERTIGHT EXAMPLES [--rounds N] [--seed S] [--boxes N]
 
 Files of every kind are stored as `watertight ingest` stores them; clients follow a job, end it, and ask twice with
 one key. Then, in N rounds, the service, its database or the helper processes that prove hard solids are killed while
@@ -133,9 +133,9 @@ def events_of(service, job):
     return seen
 
 
-def check_following(service):
+def check_following(service, boxes):
     """Clients follow a long job, end it, and ask twice."""
-    long_document = box_document(60_000, "l")
+    long_document = box_document(boxes, "l")
     _, made = start_job(service, long_document, collection="long", name="long.city.jsonl")
     job = made["jobID"]
     _, later = start_job(service, box_document(10, "q"), collection="queue")
@@ -300,6 +300,7 @@ def main():
     parser.add_argument("examples", type=pathlib.Path)
     parser.add_argument("--rounds", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--boxes", type=int, default=60_000, help="features of the long job")
     options = parser.parse_args()
     examples = options.examples.resolve()
     with temporary_folder("jobs") as folder, Service(options.program, folder) as service:
@@ -307,7 +308,7 @@ def main():
         status, body = service.request("GET", "/collections/first/export?f=wt")
         (service.folder / "town.wt").write_bytes(body)
         check_kinds(service, examples)
-        check_following(service)
+        check_following(service, options.boxes)
         check_cut_upload(service)
         check_kills(service, options.rounds, options.seed)
         log = (service.folder / "log").read_text()

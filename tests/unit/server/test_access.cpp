@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -267,7 +269,9 @@ TEST_CASE("a request without right is refused before its body comes") {
     CHECK(client.receive_answer().starts_with("HTTP/1.1 401 "));
   }
   (*server)->stop();
-  CHECK(log.find("status=200 bytes=4 ms=0 key=\"somebody\" user=\"ada\"") != std::string::npos);
+  // How long it took depends on the machine.
+  CHECK(std::regex_search(log,
+                          std::regex(R"(status=200 bytes=4 ms=[0-9]+ key="somebody" user="ada")")));
   CHECK(log.find("somebody", log.find("somebody") + 1) == std::string::npos);
 }
 

@@ -298,8 +298,9 @@ std::vector<std::vector<Index>> connected_surfaces(const ClippedFacets& clipped)
   return surfaces;
 }
 
-/// A closed surface as a solid of one shell.
+/// A closed surface: its facets, and itself as a solid of one shell.
 struct Surface {
+  std::vector<Index> facets;
   Solid solid;
   std::vector<Triangle> triangles;
 };
@@ -310,27 +311,24 @@ class Parts {
   Parts(const ClippedFacets& facets, std::uint32_t srid) : facets_(facets), srid_(srid) {}
 
   Result<std::vector<Solid>> solids() {
-    std::vector<std::vector<Index>> exteriors;
-    std::vector<std::vector<Index>> cavities;
-    std::vector<Surface> exterior_surfaces;
-    std::vector<Surface> cavity_surfaces;
-    for (std::vector<Index>& surface : connected_surfaces(facets_)) {
-      auto solid = solid_of({surface});
+    std::vector<Surface> exteriors;
+    std::vector<Surface> cavities;
+    for (std::vector<Index>& facets : connected_surfaces(facets_)) {
+      auto solid = solid_of({facets});
       if (!solid) return solid.error();
-      Surface made{*std::move(solid), {}};
-      made.triangles = triangulate_facets(made.solid).triangles;
-      const bool is_exterior = geometry::volume_sign(made.solid.vertices(), made.triangles) > 0;
-      (is_exterior ? exteriors : cavities).push_back(std::move(surface));
-      (is_exterior ? exterior_surfaces : cavity_surfaces).push_back(std::move(made));
+      std::vector<Triangle> triangles = triangulate_facets(*solid).triangles;
+      const bool is_exterior = geometry::volume_sign(solid->vertices(), triangles) > 0;
+      (is_exterior ? exteriors : cavities)
+          .push_back({std::move(facets), *std::move(solid), std::move(triangles)});
     }
     std::vector<std::vector<std::vector<Index>>> shells;
-    for (std::vector<Index>& exterior : exteriors) shells.push_back({std::move(exterior)});
-    for (std::size_t i = 0; i < cavities.size(); ++i) {
-      const std::size_t part = part_around(cavity_surfaces[i].solid, exterior_surfaces);
+    for (const Surface& exterior : exteriors) shells.push_back({exterior.facets});
+    for (const Surface& cavity : cavities) {
+      const std::size_t part = part_around(cavity.solid, exteriors);
       if (part == shells.size()) {
         return Error{ErrorCode::malformed, "a cavity is in no part of the solid"};
       }
-      shells[part].push_back(std::move(cavities[i]));
+      shells[part].push_back(cavity.facets);
     }
     std::vector<Solid> parts;
     for (const auto& part : shells) {
@@ -344,8 +342,8 @@ class Parts {
  private:
   /// The surface that a cavity is inside of, by a corner that is not on it.
   static std::size_t part_around(const Solid& cavity, const std::vector<Surface>& exteriors) {
+    if (exteriors.size() == 1) return 0;
     for (std::size_t i = 0; i < exteriors.size(); ++i) {
-      if (exteriors.size() == 1) return i;
       int place = 0;
       for (Index corner = 0; corner < cavity.vertex_count() && place == 0; ++corner) {
         place = geometry::locate(exteriors[i].solid, exteriors[i].triangles, cavity.world(corner));

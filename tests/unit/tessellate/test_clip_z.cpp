@@ -71,6 +71,21 @@ Shell prism(const std::vector<Ring>& rings, double low, double high) {
   return shell;
 }
 
+/// What an outline in x and z, seen from the front, is when it is 5 deep.
+Shell wall(const Ring& front) {
+  Ring back = front;
+  for (Point& p : back) p.y = 5;
+  Shell shell;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const std::size_t k = (i + 1) % front.size();
+    shell.push_back({{front[k], front[i], back[i], back[k]}});
+  }
+  shell.push_back({front});
+  std::ranges::reverse(back);
+  shell.push_back({std::move(back)});
+  return shell;
+}
+
 Ring square(double x, double y, double side, bool is_hole = false) {
   Ring ring{{x, y, 0}, {x + side, y, 0}, {x + side, y + side, 0}, {x, y + side, 0}};
   if (is_hole) std::ranges::reverse(ring);
@@ -178,17 +193,7 @@ TEST_CASE("a cut along a ridge, an eaves line or through an apex has no slivers"
 TEST_CASE("a cut separates towers, and joins them below") {
   const Ring u{{0, 0, 0}, {9, 0, 0}, {9, 0, 8}, {6, 0, 8},
                {6, 0, 2}, {3, 0, 2}, {3, 0, 6}, {0, 0, 6}};
-  Ring back = u;
-  for (Point& p : back) p.y = 5;
-  Shell shell;
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    const std::size_t k = (i + 1) % u.size();
-    shell.push_back({{u[k], u[i], back[i], back[k]}});
-  }
-  shell.push_back({u});
-  std::ranges::reverse(back);
-  shell.push_back({back});
-  const Solid towers = solid_of({shell});
+  const Solid towers = solid_of({wall(u)});
   CHECK(volumes(halves(towers, 4).second) == std::vector<double>{30, 60});
   CHECK(volumes(halves(towers, 4).first) == std::vector<double>{150});
   CHECK(volumes(halves(towers, 2).second) == std::vector<double>{60, 90});
@@ -211,17 +216,7 @@ TEST_CASE("cavities stay, or open into the section") {
   // A cavity in one of two towers.
   const Ring u{{0, 0, 0}, {9, 0, 0}, {9, 0, 20}, {6, 0, 20},
                {6, 0, 2}, {3, 0, 2}, {3, 0, 20}, {0, 0, 20}};
-  Ring back = u;
-  for (Point& p : back) p.y = 5;
-  Shell shell;
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    const std::size_t k = (i + 1) % u.size();
-    shell.push_back({{u[k], u[i], back[i], back[k]}});
-  }
-  shell.push_back({u});
-  std::ranges::reverse(back);
-  shell.push_back({back});
-  const Solid towers = solid_of({shell, inside_out(prism({square(7, 1, 1)}, 10, 12))});
+  const Solid towers = solid_of({wall(u), inside_out(prism({square(7, 1, 1)}, 10, 12))});
   const auto two = halves(towers, 5).second;
   REQUIRE(two.size() == 2);
   CHECK(volumes(two) == std::vector<double>{3 * 5 * 15 - 2, 3 * 5 * 15});
@@ -264,17 +259,7 @@ TEST_CASE("facets that are cut into pieces, at heights of no round number") {
     comb.push_back({2.0 * i, 0, 9});
   }
   comb.erase(std::unique(comb.begin(), comb.end()), comb.end());
-  Ring back = comb;
-  for (Point& p : back) p.y = 5;
-  Shell shell;
-  for (std::size_t i = 0; i < comb.size(); ++i) {
-    const std::size_t k = (i + 1) % comb.size();
-    shell.push_back({{comb[k], comb[i], back[i], back[k]}});
-  }
-  shell.push_back({comb});
-  std::ranges::reverse(back);
-  shell.push_back({back});
-  const Solid teeth = solid_of({shell});
+  const Solid teeth = solid_of({wall(comb)});
   for (const double height : {3.0, 3.0001, 4.123456789, 7.77, 8.999}) {
     const auto [below, above] = halves(teeth, height);
     CHECK(below.size() == 1);

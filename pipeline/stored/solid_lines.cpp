@@ -3,7 +3,12 @@
 
 #include <charconv>
 
+#include "packing/feature_text.h"
+
 namespace watertight::pipeline {
+
+using packing::kMergedLine;
+using packing::kUnprovenLine;
 
 Result<std::pair<std::size_t, std::string_view>> take_line(std::string_view& skeleton,
                                                            std::string_view start,
@@ -32,5 +37,4 @@ Result<std::vector<SolidLines>> take_solid_lines(std::string_view& skeleton, std
   }
 }
 
-/// The solid as it came, of the merged one.
 }  // namespace watertight::pipeline

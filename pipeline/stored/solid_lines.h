@@ -12,9 +12,6 @@
 
 namespace watertight::pipeline {
 
-inline constexpr std::string_view kMergedLine = "merged ";
-inline constexpr std::string_view kUnprovenLine = "unproven ";
-
 /// Takes a line that starts with `start` off the front of a skeleton. Returns the number of its
 /// solid and its text. Errors: malformed when it has no number below `solids`.
 Result<std::pair<std::size_t, std::string_view>> take_line(std::string_view& skeleton,

@@ -12,6 +12,7 @@
 
 #include "formats/city_json/city_json.h"
 #include "formats/geo_json/other_vertices.h"
+#include "packing/feature_text.h"
 #include "packing/text_dictionary.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/pipeline.h"
@@ -115,7 +116,7 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
     StoredSolid& stored = encoded.solids.emplace_back(described(inspected, submitted));
     if (!stored.is_proven) {
       include(encoded.box, submitted);
-      encoded.skeleton += line_of(kUnprovenLine, i, write_unproven(submitted));
+      encoded.skeleton += line_of(packing::kUnprovenLine, i, write_unproven(submitted));
       continue;
     }
     auto blob = blob_of(*inspected.inspection.certified, encode_options, options.steiner);
@@ -129,7 +130,7 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
     include(encoded.box, certified);
     auto merge = describe_merge(submitted, certified);
     if (!merge) return std::move(merge).error();
-    if (is_exact && !merge->empty()) encoded.skeleton += line_of(kMergedLine, i, *merge);
+    if (is_exact && !merge->empty()) encoded.skeleton += line_of(packing::kMergedLine, i, *merge);
   }
   if (!is_exact) {
     if (feature.feature.skeleton.empty()) return encoded;
@@ -199,10 +200,7 @@ Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid
 }
 
 std::string_view model_text(const EncodedFeature& feature) {
-  std::string_view skeleton = feature.skeleton;
-  const auto lines = take_solid_lines(skeleton, feature.solids.size());
-  if (!lines || !skeleton.starts_with('{')) return {};
-  return skeleton.substr(0, skeleton.find('\n'));
+  return packing::model_line(feature.skeleton);
 }
 
 std::map<std::string, std::uint64_t> other_geometries(const EncodedFeature& feature) {
@@ -236,51 +234,8 @@ Result<std::optional<store::StoredBox>> box_of(const EncodedFeature& feature,
   return box;
 }
 
-namespace {
-
-// Where a text is short because it names the feature's id often, these bytes stand for the id.
-constexpr char kHasMarks = '\x02';
-constexpr char kIdMark = '\x01';
-constexpr std::size_t kShortestId = 3;
-
-/// The text with a mark for each id, and a byte at its front that says so; the text itself when the
-/// id is short or the text has bytes like marks.
-std::string with_marks(const std::string& text, const std::string& id) {
-  std::string marked(1, kHasMarks);
-  if (text.starts_with(kHasMarks)) return marked += text;  // the byte twice: without marks
-  if (id.size() < kShortestId || text.find(kIdMark) != std::string::npos) return text;
-  std::size_t place = 0;
-  for (std::size_t found = 0; (found = text.find(id, place)) != std::string::npos;) {
-    marked.append(text, place, found - place);
-    marked += kIdMark;
-    place = found + id.size();
-  }
-  return marked.append(text, place);
-}
-
-/// The text that with_marks() was given. Errors: limit_exceeded.
-Result<std::string> without_marks(const std::string& marked, const std::string& id,
-                                  std::uint64_t most_bytes) {
-  if (!marked.starts_with(kHasMarks)) return marked;
-  std::string text;
-  if (marked.find(kHasMarks, 1) == 1) return text.append(marked, 1);
-  for (std::size_t place = 1; place < marked.size();) {
-    const std::size_t found = std::min(marked.find(kIdMark, place), marked.size());
-    text.append(marked, place, found - place);
-    if (found < marked.size()) text += id;
-    if (text.size() > most_bytes) {
-      return Error{ErrorCode::limit_exceeded,
-                   "a packed text of more than " + std::to_string(most_bytes) + " bytes"};
-    }
-    place = found + 1;
-  }
-  return text;
-}
-
-}  // namespace
-
 std::string stored_text(const EncodedFeature& feature) {
-  return with_marks(report_lines(feature) + feature.skeleton, feature.id);
+  return packing::with_marks(report_lines(feature) + feature.skeleton, feature.id);
 }
 
 Result<StoredFeature> pack(EncodedFeature feature, const packing::DictionaryPointer& dictionary) {
@@ -334,7 +289,7 @@ Result<EncodedFeature> unpack(StoredFeature stored, const Limits& limits, Report
   auto text =
       packing::unpack(stored.skeleton.bytes, stored.skeleton.dictionary.get(), limits.bytes);
   if (!text) return std::move(text).error();
-  auto whole = without_marks(*text, stored.id, limits.bytes);
+  auto whole = packing::without_marks(*text, stored.id, limits.bytes);
   if (!whole) return std::move(whole).error();
   store::FeatureRecord& record = stored;
   EncodedFeature feature{std::move(record), *std::move(whole)};

@@ -10,6 +10,7 @@
 
 #include "codec/blob.h"
 #include "geometry/measures.h"
+#include "packing/feature_text.h"
 #include "pipeline/outcome_json.h"
 #include "pipeline/stored/solid_lines.h"
 #include "pipeline/stored/unproven_solid.h"
@@ -19,9 +20,9 @@
 namespace watertight::pipeline {
 namespace {
 
-constexpr std::string_view kMeasuresLine = "measures ";
-constexpr std::string_view kReportLine = "report ";
-constexpr std::string_view kFindingsLine = "findings ";
+using packing::kFindingsLine;
+using packing::kMeasuresLine;
+using packing::kReportLine;
 constexpr std::size_t kFirstMember = 16;  // longer than the first member's name
 
 /// Measures and report of a solid, as JSON.

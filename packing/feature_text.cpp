@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "packing/feature_text.h"
+
+#include <algorithm>
+#include <array>
+
+namespace watertight::packing {
+namespace {
+
+// Where a text is short because it names the feature's id often, these bytes stand for the id.
+constexpr char kHasMarks = '\x02';
+constexpr char kIdMark = '\x01';
+constexpr std::size_t kShortestId = 3;
+
+}  // namespace
+
+std::string_view model_line(std::string_view text) {
+  constexpr std::array kStarts{kMergedLine, kUnprovenLine, kMeasuresLine, kReportLine,
+                               kFindingsLine};
+  while (std::ranges::any_of(kStarts, [&](auto start) { return text.starts_with(start); })) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  return text.starts_with('{') ? text.substr(0, text.find('\n')) : std::string_view();
+}
+
+std::string with_marks(const std::string& text, const std::string& id) {
+  std::string marked(1, kHasMarks);
+  if (text.starts_with(kHasMarks)) return marked += text;  // the byte twice: without marks
+  if (id.size() < kShortestId || text.find(kIdMark) != std::string::npos) return text;
+  std::size_t place = 0;
+  for (std::size_t found = 0; (found = text.find(id, place)) != std::string::npos;) {
+    marked.append(text, place, found - place);
+    marked += kIdMark;
+    place = found + id.size();
+  }
+  return marked.append(text, place);
+}
+
+Result<std::string> without_marks(const std::string& marked, const std::string& id,
+                                  std::uint64_t most_bytes) {
+  if (!marked.starts_with(kHasMarks)) return marked;
+  std::string text;
+  if (marked.find(kHasMarks, 1) == 1) return text.append(marked, 1);
+  for (std::size_t place = 1; place < marked.size();) {
+    const std::size_t found = std::min(marked.find(kIdMark, place), marked.size());
+    text.append(marked, place, found - place);
+    if (found < marked.size()) text += id;
+    if (text.size() > most_bytes) {
+      return Error{ErrorCode::limit_exceeded,
+                   "a packed text of more than " + std::to_string(most_bytes) + " bytes"};
+    }
+    place = found + 1;
+  }
+  return text;
+}
+
+}  // namespace watertight::packing

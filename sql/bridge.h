@@ -146,6 +146,11 @@ typedef struct wt_blob_view {
   const uint8_t* bytes;
   size_t size;
 } wt_blob_view;
+/** Answers the packed text of a feature in the tables of the service with its city model as JSON;
+ *  without bytes where it has none. `dictionary` is that of the row, without bytes for none, `id`
+ * the id of the feature. */
+void wt_bridge_stored_model(const wt_job* job, wt_blob_view dictionary, const char* id,
+                            wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Blobs and the names of their solids, UTF-8. */
 typedef struct wt_named_blobs {
   const wt_blob_view* blobs;

@@ -485,3 +485,55 @@ CREATE OPERATOR CLASS solid_range_ops DEFAULT FOR TYPE solid USING brin AS
   FUNCTION 4 brin_inclusion_union(internal, internal, internal),
   FUNCTION 11 wt_box_union(wt_box, wt_box),
   STORAGE wt_box;
+
+-- The tables of the service as one view.
+CREATE FUNCTION wt_stored_model(packed bytea, dictionary bytea, id text) RETURNS jsonb
+  AS 'MODULE_PATHNAME', 'wt_solid_stored_model' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 200;
+COMMENT ON FUNCTION wt_stored_model(bytea, bytea, text) IS
+  'city model, without its coordinates, of the text of a feature that the service has stored; for the view watertight.city';
+CREATE FUNCTION wt_stored_semantics(geometry jsonb, ordinal bigint) RETURNS jsonb
+  LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 200
+  RETURN (
+    SELECT jsonb_agg(coalesce(geometry #> ARRAY['semantics', 'surfaces', facet.number], 'null'::jsonb) ORDER BY shell.place, facet.place)
+    FROM (SELECT geometry #> CASE geometry ->> 'type' WHEN 'Solid' THEN ARRAY['semantics', 'values']
+                               ELSE ARRAY['semantics', 'values', ordinal::text] END AS shells) solid
+    -- A shell whose values are null does not say how many facets it has.
+    CROSS JOIN LATERAL jsonb_array_elements(
+      CASE WHEN jsonb_typeof(solid.shells) = 'array' AND NOT jsonb_path_exists(solid.shells, 'strict $[*] ? (@.type() != "array")')
+        THEN solid.shells END) WITH ORDINALITY AS shell(numbers, place)
+    CROSS JOIN LATERAL jsonb_array_elements_text(shell.numbers) WITH ORDINALITY AS facet(number, place));
+COMMENT ON FUNCTION wt_stored_semantics(jsonb, bigint) IS
+  'semantic surfaces of the facets of a solid, of its geometry in a city model; for the view watertight.city';
+CREATE FUNCTION wt_make_city_view() RETURNS void LANGUAGE plpgsql SET client_min_messages = warning AS $$
+  DECLARE
+    here regnamespace := (SELECT extnamespace FROM pg_extension WHERE extname = 'watertight');
+    casts regnamespace := (SELECT extnamespace FROM pg_extension WHERE extname = 'watertight_postgis');
+  BEGIN
+    IF to_regclass('watertight.feature_row') IS NULL THEN
+      RAISE 'there are no tables of the service in this database' USING ERRCODE = 'undefined_table',
+        HINT = 'watertight serve and watertight ingest make them in the database that --database-url names.';
+    END IF;
+    EXECUTE 'DROP VIEW IF EXISTS watertight.city';
+    EXECUTE format($view$
+      CREATE VIEW watertight.city AS
+        SELECT c.name AS collection, f.id AS feature, f.version, s.object_id AS object,
+               m.model #>> ARRAY['CityObjects', s.object_id, 'type'] AS type, s.lod, s.geometry AS geometry_number, s.ordinal,
+               s.is_proven,
+               coalesce(m.model #> ARRAY['CityObjects', f.id, 'attributes'], '{}')
+                 || coalesce(m.model #> ARRAY['CityObjects', s.object_id, 'attributes'], '{}') AS attributes,
+               %1$s.wt_stored_semantics(m.model #> ARRAY['CityObjects', s.object_id, 'geometry', s.geometry::text], s.ordinal) AS semantics,
+               %1$s.wt_box(f.min_x, f.min_y, f.min_z, f.max_x, f.max_y, f.max_z) AS feature_box, v.solid%2$s
+        FROM watertight.feature_row f
+        JOIN watertight.collection c ON c.key = f.collection
+        LEFT JOIN watertight.dictionary d ON d.key = f.dictionary
+        CROSS JOIN LATERAL (SELECT %1$s.wt_stored_model(f.packed_text, coalesce(d.content, ''), f.id) AS model OFFSET 0) m
+        CROSS JOIN LATERAL watertight.stored_solids(f.id, f.solids, f.packed_solids) s
+        CROSS JOIN LATERAL (SELECT %1$s.wt_solid(coalesce(s.blob, %1$s.wt_blob(s.page, s.slot))) AS solid OFFSET 0) v
+      $view$, here,
+      CASE WHEN casts IS NULL THEN ''
+        ELSE format(', CASE WHEN %s.wt_shell_count(v.solid) = 1 THEN %s.wt_geometry(v.solid) END AS geometry', here, casts) END);
+    EXECUTE $comment$COMMENT ON VIEW watertight.city IS
+      'The solids that the service has stored, with type, attributes and semantic surfaces. Its columns stay; the tables may change'$comment$;
+  END $$;
+COMMENT ON FUNCTION wt_make_city_view() IS
+  'makes the view watertight.city over the tables of the service, with the column geometry where watertight_postgis is installed';

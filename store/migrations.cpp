@@ -8,6 +8,7 @@
 #include <string>
 
 #include "store/attributes/attribute_schema.h"
+#include "store/rows/city_view.h"
 #include "store/rows/page_schema.h"
 
 namespace watertight::store {
@@ -560,9 +561,7 @@ Status migrate_locked(DatabaseSession& connection, const Tell& tell) {
   return change_moved(connection, *found);
 }
 
-}  // namespace
-
-Status migrate(DatabaseSession& connection, const Tell& tell) {
+Status update_schema(DatabaseSession& connection, const Tell& tell) {
   const Result<std::int64_t> found = applied(connection);
   if (!found) return found.error();
   if (*found == kNewest) return Done{};
@@ -576,6 +575,14 @@ Status migrate(DatabaseSession& connection, const Tell& tell) {
   }
   if (const Result<Rows> unlocked = connection.run(kUnlock); !unlocked) return unlocked.error();
   return done;
+}
+
+}  // namespace
+
+Status migrate(DatabaseSession& connection, const Tell& tell) {
+  if (Status updated = update_schema(connection, tell); !updated) return updated;
+  if (const Result<Rows> made = connection.run(kMakeCityView); !made) return made.error();
+  return Done{};
 }
 
 Status check_schema(DatabaseSession& connection) {

@@ -5,6 +5,8 @@
 #   POSTGRES_PASSWORD   required at the first start: password of the role watertight (SCRAM)
 #   POSTGRES_PORT       default 5432
 #   POSTGRES_LISTEN     default '*'
+#   POSTGRES_COORDINATOR  not empty at the first start: the database has the extension
+#                       watertight_shards, and the role may make shards known to it
 set -euo pipefail
 data=/var/lib/postgresql/data
 port=${POSTGRES_PORT:-5432}
@@ -26,6 +28,13 @@ CREATE DATABASE watertight OWNER watertight ENCODING 'UTF8';
 \connect watertight
 CREATE EXTENSION watertight;
 SQL
+  if [ -n "${POSTGRES_COORDINATOR:-}" ]; then
+    "$bin/psql" -X -q -v ON_ERROR_STOP=1 -h "$sockets" -p "$port" -d watertight <<'SQL'
+SET client_min_messages = warning;
+CREATE EXTENSION watertight_shards CASCADE;
+GRANT USAGE ON FOREIGN DATA WRAPPER postgres_fdw TO watertight;
+SQL
+  fi
   "$bin/pg_ctl" --pgdata="$data" --wait --silent stop >/dev/null
   touch "$data/ready"
 fi

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Builds the images with podman, starts database and service by docker/compose.test.yaml, and runs
 # round_trip.py against them: a tile is stored by REST, read by REST and by SQL, and compared
-# exactly; the database is killed while features are stored. Removes everything that it started, in
+# exactly; the database is killed while features are stored. Then a table is spread over the shards of
+# docker/shards.compose.yaml. Removes everything that it started, in
 # any case. Needs root and the packages of `scripts/install-dependencies containers`.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -18,7 +19,10 @@ POSTGRES_PASSWORD=$(head -c 18 /dev/urandom | base64 | tr -d '+/=')
 POSTGRES_PORT=$(free_port)
 SERVICE_PORT=$(free_port)
 export POSTGRES_PASSWORD POSTGRES_PORT SERVICE_PORT
+COORDINATOR_PORT=$(free_port)
+export COORDINATOR_PORT WATERTIGHT_POSTGRES_IMAGE=localhost/watertight-postgres:test
 compose() { podman-compose --project-name "$project" --file docker/compose.test.yaml "$@"; }
+shards() { podman-compose --project-name "$project-shards" --file docker/shards.compose.yaml "$@"; }
 
 clean_up() {
   status=$?
@@ -29,7 +33,8 @@ clean_up() {
     done
   fi
   compose down --volumes --timeout 5 >"$folder/down.log" 2>&1 || cat "$folder/down.log"
-  podman network rm --force "${project}_default" >/dev/null 2>&1 || true
+  shards down --volumes --timeout 5 >"$folder/down.log" 2>&1 || cat "$folder/down.log"
+  podman network rm --force "${project}_default" "$project-shards_default" >/dev/null 2>&1 || true
   [ "$forwarding" != 0 ] || echo 0 >/proc/sys/net/ipv4/ip_forward || true
   rm -rf "$folder"
 }
@@ -63,3 +68,22 @@ python3 tests/integration/round_trip.py --service "http://127.0.0.1:$SERVICE_POR
 for name in db service; do
   podman healthcheck run "${project}_${name}_1" || { echo "round_trip: $name is not healthy" >&2; exit 1; }
 done
+compose down --volumes --timeout 5 >"$folder/down.log" 2>&1
+
+shards up --detach --no-build >"$folder/up.log" 2>&1 || true
+coordinator() {
+  psql -X -q -At -v ON_ERROR_STOP=1 -v password="$POSTGRES_PASSWORD" \
+    "postgresql://watertight:$POSTGRES_PASSWORD@127.0.0.1:$COORDINATOR_PORT/watertight" "$@"
+}
+for ((try = 0; try < 120; try++)); do
+  if coordinator -f docker/shards.sql >"$folder/shards.log" 2>&1; then break; fi
+  sleep 1
+done
+cat "$folder/shards.log"
+coordinator -c "CREATE TABLE city (id text NOT NULL, shape solid) PARTITION BY HASH (id)" -c "SELECT wt_spread('city', 4, '{east,west}')"
+stored=$(build/release/bin/watertight rows examples/delft.city.jsonl | coordinator \
+  -c "CREATE TEMP TABLE delivered (feature text, object text, lod text, ewkb bytea)" -c "COPY delivered FROM STDIN" \
+  -c "SELECT count(*), sum(stored) FROM wt_load('city', 'SELECT object || lod AS id, ewkb AS shape FROM delivered', skip_invalid => true)" \
+  -c "SELECT count(shape), round(sum(wt_volume(shape))) FROM city")
+[ "$stored" = "$(printf '2|470\n470|1314329')" ] || { echo "round_trip: the shards have something else: $stored" >&2; exit 1; }
+echo "470 solids were spread over two shards"

@@ -3,9 +3,10 @@
 """Measures tables of the type solid: rows.py BUILD [--rows N] DOCUMENT...
 
 The valid solids of the documents are moved to places of their own until there are N rows (100,000), in a server of its
-own with PostgreSQL's default settings but 1 GB of shared buffers. Measured are: judging and loading EWKB with full proof, the sizes of
-tables of solids, blobs, EWKB (in bytea, compressed by PostgreSQL) beside each other, the index, a dump and its return,
-and queries. Needs what tests/sql/run_regress.sh needs.
+own with PostgreSQL's default settings but 1 GB of shared buffers and the cost of a random page that fits solid-state disks (1.1).
+Measured are: judging EWKB with full proof, the sizes of tables of solids, blobs, EWKB (in bytea, compressed by PostgreSQL) beside
+each other, indexes, queries, those of the CityParquet benchmark among them, a dump and its return. Needs what
+tests/sql/run_regress.sh needs.
 """
 import argparse
 import json
@@ -30,10 +31,10 @@ class Server:
             subprocess.run(["chown", "-R", user.pw_name, str(folder)], check=True)
         self.run("initdb", "-D", str(folder / "data"), "-N", "--username=watertight", "--encoding=UTF8", "--no-locale", "--auth=trust")
         self.run("pg_ctl", "-D", str(folder / "data"), "-w", "-s", "-l", str(folder / "log"), "-o",
-                 f"-c listen_addresses= -c unix_socket_directories={folder} -c shared_buffers=1GB", "start")
+                 f"-c listen_addresses= -c unix_socket_directories={folder} -c shared_buffers=1GB -c random_page_cost=1.1", "start")
 
     def run(self, name, *words, **options):
-        return subprocess.run([*self.prefix, f"{self.bin}/{name}", *words], check=True, capture_output=True, text=True, **options).stdout
+        return subprocess.run([*self.prefix, name if name == "bash" else f"{self.bin}/{name}", *words], check=True, capture_output=True, text=True, **options).stdout
 
     def ask(self, *statements, database="postgres", stdin=None):
         commands = [word for statement in statements for word in ("-c", statement)]
@@ -66,10 +67,16 @@ def load(server, build, documents, rows):
                          ("parallel", "SET min_parallel_table_scan_size = 0; ALTER TABLE documents SET (parallel_workers = 1)")):
         elapsed = server.seconds(option, "SELECT count(wt_solid(ewkb)) FROM documents, generate_series(1, 5)")
         say(f"judged with full proof, {name}", f"{5 * count / elapsed:9.0f} solids/s")
+    # The tables of the service have the attributes of the solids; a command that finds invalid solids ends with status 1.
+    subprocess.run([*server.prefix, f"{build}/bin/watertight", "ingest", "-q", "--database-url", f"host={server.folder} user=watertight dbname=postgres",
+                    "--collection", "city", "--invalid", "keep", *map(str, documents)], check=False, capture_output=True)
+    server.ask("CREATE TABLE stock AS SELECT attributes, solid FROM watertight.city WHERE is_proven")
+    count = int(server.ask("SELECT count(*) FROM stock"))
     copies = -(-rows // count)
-    server.ask(f"CREATE TABLE town AS SELECT (row_number() OVER ())::int AS id, wt_translate(wt_solid(blob), 2000 * (c % 40), 2000 * (c / 40), 0) AS shape"
-               f" FROM documents, generate_series(0, {copies - 1}) AS c LIMIT {rows}")
-    server.ask("ALTER TABLE town ADD PRIMARY KEY (id)", "VACUUM ANALYZE town")
+    server.ask(f"CREATE TABLE whole AS SELECT (row_number() OVER ())::int AS id, attributes, wt_translate(solid, 2000 * (c % 40), 2000 * (c / 40), 0) AS shape"
+               f" FROM stock, generate_series(0, {copies - 1}) AS c LIMIT {rows}",
+               "CREATE TABLE town AS SELECT id, shape FROM whole ORDER BY id", "CREATE TABLE about AS SELECT id, attributes FROM whole ORDER BY id", "DROP TABLE whole")
+    server.ask("ALTER TABLE town ADD PRIMARY KEY (id)", "ALTER TABLE about ADD PRIMARY KEY (id)", "VACUUM ANALYZE town", "VACUUM ANALYZE about")
     return int(server.ask("SELECT count(*) FROM town"))
 
 
@@ -129,6 +136,23 @@ def measure_queries(server, rows):
         say(f"{what} of all", f"{elapsed:9.2f} s, {rows / elapsed:9.0f} solids/s")
 
 
+def measure_city(server, rows):
+    """Queries of the CityParquet benchmark, fetched by a client; that by box is measure_queries()'s."""
+    name = "b3_h_dak_max"
+    say("attributes, size", f"{int(server.ask('SELECT pg_table_size($$about$$)')) / 1e6:9.1f} MB, those of the service as jsonb")
+    for what, statement, times in (
+            ("count", "SELECT count(*) FROM town", 7), ("attribute statistics", f"SELECT count(v), min(v), avg(v), max(v) FROM (SELECT (attributes->>'{name}')::float8 AS v FROM about) a", 7),
+            ("id and attributes by id", f"SELECT * FROM town JOIN about USING (id) WHERE id = {rows // 3}", 50)):
+        median, most = timed(server, statement, times)
+        say(f"{what}, one process or more", f"{median:9.2f} ms, p99 {most:.2f}")
+    for what, query in (("geometry scan: id and solid as blob", "SELECT id, shape FROM town"), ("full read: id, attributes, solid as blob", "SELECT id, attributes, shape FROM town JOIN about USING (id)"),
+                        ("geometry scan: id and EWKB", "SELECT id, wt_as_ewkb(shape) FROM town")):
+        start = time.perf_counter()
+        bytes_read = server.run("bash", "-c", f"'{server.bin}/psql' -X -q -h '{server.folder}' -U watertight -d postgres -c 'COPY ({query}) TO STDOUT (FORMAT binary)' | wc -c")
+        elapsed = time.perf_counter() - start
+        say(f"{what}, to a client", f"{elapsed:9.2f} s, {int(bytes_read) / 1e6:.1f} MB, {rows / elapsed:9.0f} rows/s")
+
+
 def measure_dump(server, rows):
     file = server.folder / "dump"
     elapsed = server.seconds(f"COPY town TO '{file}'")
@@ -156,6 +180,7 @@ def main():
             measure_sizes(server, rows)
             measure_index(server)
             measure_queries(server, rows)
+            measure_city(server, rows)
             measure_dump(server, rows)
         finally:
             server.stop()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The ring edges of a shell, grouped by their two vertices. Internal to validate/.
+// The ring edges of a shell, grouped by their two vertices. For validate/ and repair/.
 #pragma once
 
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Snapping: makes another solid, in which vertices within a tolerance have the same coordinates.
-// Done only on request. Internal to validate/.
+// Done only on request. For validate/ and repair/.
 #pragma once
 
 #include "base/cancel.h"

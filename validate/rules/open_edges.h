@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Examines the edges that only one facet meets: finds the T-junctions and the borders that these
-// edges form. Internal to validate/.
+// edges form. For validate/ and repair/.
 #pragma once
 
 #include <vector>

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "geometry/measures.h"
+#include "geometry/predicates/predicates.h"
+#include "repair/remedies.h"
+#include "repair/turn.h"
+#include "tessellate/facets.h"
+
+namespace watertight::repair {
+namespace {
+
+/// A facet that passes an edge, and whether it does so from the smaller vertex on.
+struct Pass {
+  std::size_t facet = 0;
+  bool is_forward = false;
+};
+
+using EdgePasses = std::map<std::pair<Index, Index>, std::vector<Pass>>;
+
+EdgePasses passes_of(const std::vector<EditedFacet>& facets) {
+  EdgePasses passes;
+  for (std::size_t facet = 0; facet < facets.size(); ++facet) {
+    for (const Ring& ring : facets[facet].rings) {
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Index from = ring[i];
+        const Index to = ring[(i + 1) % ring.size()];
+        passes[std::minmax(from, to)].push_back({facet, from < to});
+      }
+    }
+  }
+  return passes;
+}
+
+/// Facets that meet across edges of two facets, and whether the two disagree.
+std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours_of(
+    const std::vector<EditedFacet>& facets) {
+  std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(facets.size());
+  for (const auto& [edge, passes] : passes_of(facets)) {
+    if (passes.size() != 2 || passes[0].facet == passes[1].facet) continue;
+    const bool disagree = passes[0].is_forward == passes[1].is_forward;
+    neighbours[passes[0].facet].emplace_back(passes[1].facet, disagree);
+    neighbours[passes[1].facet].emplace_back(passes[0].facet, disagree);
+  }
+  return neighbours;
+}
+
+/// Turns facets so that neighbours agree. A set that no choice satisfies (a Moebius strip) stays.
+std::size_t agree(std::vector<EditedFacet>& facets) {
+  const auto neighbours = neighbours_of(facets);
+  std::vector<int> side(facets.size(), 0);  // +1 and -1 in the two parts of a connected set
+  std::size_t turned = 0;
+  for (std::size_t start = 0; start < facets.size(); ++start) {
+    if (side[start] != 0) continue;
+    std::vector<std::size_t> set{start};
+    side[start] = 1;
+    bool is_orientable = true;
+    for (std::size_t next = 0; next < set.size(); ++next) {
+      for (const auto& [other, disagree] : neighbours[set[next]]) {
+        const int wanted = disagree ? -side[set[next]] : side[set[next]];
+        if (side[other] == 0) {
+          side[other] = wanted;
+          set.push_back(other);
+        } else if (side[other] != wanted) {
+          is_orientable = false;
+        }
+      }
+    }
+    if (!is_orientable) continue;
+    const auto behind = static_cast<std::size_t>(
+        std::ranges::count_if(set, [&](std::size_t facet) { return side[facet] < 0; }));
+    const int smaller = 2 * behind <= set.size() ? -1 : 1;
+    for (const std::size_t facet : set) {
+      if (side[facet] != smaller) continue;
+      turn_over(facets[facet]);
+      ++turned;
+    }
+  }
+  return turned;
+}
+
+std::size_t turn_interior_rings(const EditedSolid& solid, std::vector<EditedFacet>& facets) {
+  std::size_t turned = 0;
+  for (EditedFacet& facet : facets) {
+    if (facet.rings.size() < 2) continue;
+    const int exterior = turn_of(solid, facet, facet.rings[0]);
+    for (std::size_t i = 1; i < facet.rings.size(); ++i) {
+      if (exterior == 0 || turn_of(solid, facet, facet.rings[i]) != exterior) continue;
+      std::reverse(facet.rings[i].begin(), facet.rings[i].end());
+      ++turned;
+    }
+  }
+  return turned;
+}
+
+/// The sign of the volume that a closed shell encloses; 0 where facets have no triangles.
+int sign_of_volume(const EditedSolid& edited, std::span<const EditedFacet> shell) {
+  const Result<Solid> solid = solid_of(edited, shell);
+  if (!solid) return 0;
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(*solid);
+  const bool has_all = std::ranges::all_of(facets.state, [](tessellate::FacetState state) {
+    return state == tessellate::FacetState::triangulated;
+  });
+  if (!has_all) return 0;
+  const double volume = geometry::measure(facets.divided_solid(*solid), facets.triangles).volume;
+  return volume > 0 ? 1 : volume < 0 ? -1 : 0;
+}
+
+bool is_closed(const std::vector<EditedFacet>& facets) {
+  const EdgePasses passes = passes_of(facets);
+  return std::ranges::all_of(passes, [](const auto& edge) {
+    return edge.second.size() == 2 && edge.second[0].is_forward != edge.second[1].is_forward;
+  });
+}
+
+}  // namespace
+
+int turn_of(const EditedSolid& edited, const EditedFacet& facet, const Ring& ring) {
+  const Result<Solid> solid = solid_of(edited, {&facet, 1});
+  if (!solid || ring.size() < 3) return 0;
+  const tessellate::Projection projection = tessellate::facet_projection(*solid, 0);
+  if (projection.is_degenerate) return 0;
+  const auto u = (projection.axis + 1) % 3;
+  const auto v = (projection.axis + 2) % 3;
+  const auto smallest = std::ranges::min_element(ring, [&](Index a, Index b) {
+    const Point& p = edited.vertices[a];
+    const Point& q = edited.vertices[b];
+    return std::pair(p[u], p[v]) < std::pair(q[u], q[v]);
+  });
+  const auto place = static_cast<std::size_t>(smallest - ring.begin());
+  return geometry::orient2d(edited.vertices[ring[(place + ring.size() - 1) % ring.size()]],
+                            edited.vertices[ring[place]],
+                            edited.vertices[ring[(place + 1) % ring.size()]], projection.axis);
+}
+
+std::size_t orient(EditedSolid& solid) {
+  std::size_t turned = 0;
+  for (std::size_t shell = 0; shell < solid.shells.size(); ++shell) {
+    std::vector<EditedFacet>& facets = solid.shells[shell];
+    turned += turn_interior_rings(solid, facets) + agree(facets);
+    if (!is_closed(facets)) continue;
+    const int wanted = shell == 0 ? 1 : -1;
+    if (sign_of_volume(solid, facets) != -wanted) continue;
+    for (EditedFacet& facet : facets) turn_over(facet);
+    turned += facets.size();
+  }
+  return turned;
+}
+
+}  // namespace watertight::repair

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The remedies for invalid solids, each a function that changes facets and answers with the number
+// of places that it changed. None of them judges its result: repair.h does, by the validator.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/valid_solid.h"
+#include "repair/edited_solid.h"
+
+namespace watertight::repair {
+
+/// Drops repeated points, spikes (a b a) and facets whose points lie on a line; of equal facets one
+/// stays, and of two that face each other none. Divides a ring that passes a vertex twice into
+/// facets where all parts turn alike. Exact. Cost: O(n log n), and a triangulation for each facet
+/// that is divided.
+std::size_t mend_rings(EditedSolid& solid);
+
+/// Turns facets so that neighbours agree, the smaller part of each connected set; interior rings
+/// against exterior ones; then shells, so that the exterior one looks outwards and the others
+/// inwards. Exact. Cost: O(n log n) and a triangulation.
+std::size_t orient(EditedSolid& solid);
+
+/// Inserts into edges that only one facet uses the vertices that lie exactly in them and end such
+/// edges. Exact. Cost: O(n log n + vertices close to each edge), bounded.
+std::size_t insert_junctions(EditedSolid& solid);
+
+/// Makes vertices at most `metres` apart one (validate/snap.h), and inserts vertices of open edges
+/// into open edges at most `metres` away. Answers with the number of vertices that moved or were
+/// inserted. Cost: O(n log n); quadratic in the open edges.
+std::size_t weld(EditedSolid& solid, double metres);
+
+/// Replaces facets by their canonical triangles (tessellate/facets.h). Numbers count through all
+/// shells. Facets without triangulation stay. Cost: that of the triangulation.
+std::size_t triangulate(EditedSolid& solid, std::span<const Index> facets);
+
+/// The way in which a hole was filled.
+struct HoleFill {
+  Index shell = 0;
+  std::size_t loops = 0;
+  std::size_t vertices = 0;
+  std::size_t facets = 0;  // new ones
+  std::string method;      // "facet": one planar facet with rings; "plan": canonical triangles;
+                           // "unfilled"
+  std::string reason;      // why it is unfilled
+};
+
+/// Closes the borders of shells. Loops that lie inside another one and run the other way are its
+/// islands. A hole whose loops are within the tolerances of one plane becomes a facet with rings;
+/// one whose loops do not cross in projection becomes the canonical triangles of such a facet.
+/// Cost: O(n log n), and a triangulation for each pair of loops.
+std::vector<HoleFill> fill_holes(EditedSolid& solid, const Tolerances& tolerances);
+
+}  // namespace watertight::repair

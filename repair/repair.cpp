@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "repair/repair.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace watertight::repair {
+namespace {
+
+// Facets that the metric rules refuse: not flat (203), folded (204).
+constexpr std::array<int, 2> kBentFacet{203, 204};
+
+/// A set of remedies that is tried.
+struct Attempt {
+  bool has_orientation = false;
+  bool has_junctions = false;
+  double weld_metres = 0;
+  bool has_facets = false;
+  bool has_fill = false;
+};
+
+bool has(const RepairOptions& options, Remedy remedy) {
+  return std::ranges::find(options.remedies, remedy) != options.remedies.end();
+}
+
+/// The sets in the order in which they are tried: what guesses nothing, then triangles for bent
+/// facets, then filled holes, each without welding before any with it.
+std::vector<Attempt> attempts_of(const RepairOptions& options) {
+  std::vector<double> welds{0};
+  if (has(options, Remedy::weld) && options.weld_metres > 0) {
+    welds.push_back(options.weld_metres / 10);
+    welds.push_back(options.weld_metres);
+  }
+  const bool has_orientation = has(options, Remedy::orientation);
+  const bool has_junctions = has(options, Remedy::junctions);
+  std::vector<Attempt> attempts;
+  attempts.push_back({});
+  if (has_orientation) attempts.push_back({true});
+  if (has_junctions) attempts.push_back({has_orientation, true});
+  for (const double weld : welds) {
+    const Attempt base{has_orientation, has_junctions, weld};
+    for (const auto& [facets, fill] :
+         {std::pair(false, false), {true, false}, {false, true}, {true, true}}) {
+      if ((facets && !has(options, Remedy::facets)) || (fill && !has(options, Remedy::fill)) ||
+          (!facets && !fill && weld == 0)) {
+        continue;
+      }
+      Attempt attempt = base;
+      attempt.has_facets = facets;
+      attempt.has_fill = fill;
+      attempts.push_back(attempt);
+    }
+  }
+  return attempts;
+}
+
+/// The facets that a report refuses for their shape.
+std::vector<Index> bent_facets(const validate::Report& report) {
+  std::vector<Index> facets;
+  for (const Finding& finding : report.findings) {
+    const bool is_bent = std::ranges::find(kBentFacet, finding.code) != kBentFacet.end();
+    if (is_bent && finding.place.facet != kNone) facets.push_back(finding.place.facet);
+  }
+  return facets;
+}
+
+class Trial {
+ public:
+  Trial(const Solid& solid, delaunay::EngineWorkers* workers, const RepairOptions& options)
+      : start_(edited(solid)), workers_(workers), options_(options) {}
+
+  /// Applies a set of remedies. True if the result is valid.
+  bool run(const Attempt& attempt, Repaired& repaired) {
+    EditedSolid work = start_;
+    std::vector<Remedy> changed;
+    const auto note = [&](Remedy remedy, std::size_t changes) {
+      if (changes > 0 && std::ranges::find(changed, remedy) == changed.end()) {
+        changed.push_back(remedy);
+      }
+    };
+    if (has(options_, Remedy::rings)) note(Remedy::rings, mend_rings(work));
+    if (attempt.has_orientation) note(Remedy::orientation, orient(work));
+    if (attempt.weld_metres > 0) note(Remedy::weld, weld(work, attempt.weld_metres));
+    if (attempt.has_junctions) note(Remedy::junctions, insert_junctions(work));
+    std::vector<HoleFill> holes;
+    if (attempt.has_fill) {
+      holes = fill_holes(work, options_.certify.tolerances);
+      note(Remedy::fill, static_cast<std::size_t>(std::ranges::count_if(
+                             holes, [](const HoleFill& hole) { return hole.facets > 0; })));
+    }
+    if (attempt.has_orientation) note(Remedy::orientation, orient(work));
+    if (attempt.has_facets) note(Remedy::facets, mend_bent_facets(work));
+    if (changed.empty()) return false;
+    const Result<Solid> solid = solid_of(work);
+    if (!solid) return false;
+    Inspection inspection = certify(*solid, workers_, options_.certify);
+    if (!inspection.certified) return false;
+    std::ranges::sort(changed);
+    repaired.outcome = Repaired::Outcome::repaired;
+    repaired.after = std::move(inspection);
+    repaired.edits = std::move(work);
+    repaired.remedies = std::move(changed);
+    repaired.holes = std::move(holes);
+    return true;
+  }
+
+ private:
+  std::size_t mend_bent_facets(EditedSolid& work) const {
+    const Result<Solid> solid = solid_of(work);
+    if (!solid) return 0;
+    CertifyOptions quick = options_.certify;
+    quick.proof = Proof::boundary;
+    return triangulate(work, bent_facets(certify(*solid, nullptr, quick).report));
+  }
+
+  EditedSolid start_;
+  delaunay::EngineWorkers* workers_;
+  const RepairOptions& options_;
+};
+
+}  // namespace
+
+std::string_view to_string(Remedy remedy) {
+  switch (remedy) {
+    case Remedy::rings:
+      return "rings";
+    case Remedy::orientation:
+      return "orientation";
+    case Remedy::junctions:
+      return "junctions";
+    case Remedy::weld:
+      return "weld";
+    case Remedy::facets:
+      return "facets";
+    case Remedy::fill:
+      return "fill";
+  }
+  return "";
+}
+
+Repaired repair(const Solid& solid, delaunay::EngineWorkers* workers,
+                const RepairOptions& options) {
+  Repaired repaired;
+  const Inspection inspection = certify(solid, workers, options.certify);
+  repaired.before = inspection.report;
+  if (inspection.report.verdict == Verdict::valid) {
+    repaired.outcome = Repaired::Outcome::valid_as_read;
+    return repaired;
+  }
+  Trial trial(solid, workers, options);
+  for (const Attempt& attempt : attempts_of(options)) {
+    if (trial.run(attempt, repaired)) break;
+  }
+  return repaired;
+}
+
+}  // namespace watertight::repair

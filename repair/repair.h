@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Makes invalid solids valid by the least change. Remedies are tried in growing sets; the first
+// result that the validator accepts is taken, and nothing else is called repaired.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "repair/remedies.h"
+#include "validate/certify.h"
+
+namespace watertight::repair {
+
+/// The remedies in the order in which they are tried. The first three guess nothing.
+enum class Remedy : std::uint8_t { rings, orientation, junctions, weld, facets, fill };
+std::string_view to_string(Remedy remedy);
+
+struct RepairOptions {
+  std::vector<Remedy> remedies{Remedy::rings, Remedy::orientation, Remedy::junctions};
+  double weld_metres = 0;  // the largest move of a vertex by Remedy::weld; 0: none
+  CertifyOptions certify;
+};
+
+struct Repaired {
+  enum class Outcome : std::uint8_t { valid_as_read, repaired, not_repaired };
+  Outcome outcome = Outcome::not_repaired;
+  validate::Report before;           // on the solid as it was submitted
+  std::optional<Inspection> after;   // on the repaired solid; absent unless it was repaired
+  std::optional<EditedSolid> edits;  // the facets of the repaired solid and where they came from
+  std::vector<Remedy> remedies;      // those that changed something
+  std::vector<HoleFill> holes;
+};
+
+/// Repairs a solid. Never fails. Deterministic but for time limits of engines. Cost: that of
+/// validating it once for each set of remedies.
+Repaired repair(const Solid& solid, delaunay::EngineWorkers* workers, const RepairOptions& options);
+
+}  // namespace watertight::repair

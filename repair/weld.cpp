@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "geometry/vector3.h"
+#include "repair/border_loops.h"
+#include "repair/remedies.h"
+#include "validate/snap.h"
+
+namespace watertight::repair {
+namespace {
+
+using geometry::cross;
+using geometry::dot;
+using geometry::operator-;
+using geometry::Vector3;
+
+// Beyond this number of border vertices of a shell nothing is inserted into edges.
+constexpr std::size_t kMostBorderVertices = 20'000;
+
+/// A vertex that is near an edge, and how far along it, 0 to 1.
+struct Near {
+  std::size_t facet = 0;
+  std::size_t ring = 0;
+  std::size_t position = 0;  // of the start of the edge
+  double share = 0;
+  Index vertex = 0;
+};
+
+/// How far along the segment from a to b the vertex p is, if it is at most `metres` from a point
+/// inside it; negative if not.
+double share_if_near(const Vector3& a, const Vector3& b, const Vector3& p, double metres) {
+  const Vector3 way = b - a;
+  const double square = dot(way, way);
+  if (square == 0) return -1;
+  const double share = dot(p - a, way) / square;
+  if (share <= 0 || share >= 1) return -1;
+  const Vector3 off = cross(p - a, way);
+  return dot(off, off) <= metres * metres * square ? share : -1;
+}
+
+std::vector<Near> near_edges(const EditedSolid& solid, const std::vector<EditedFacet>& facets,
+                             double metres) {
+  std::vector<Index> ends;
+  std::vector<std::pair<Index, Index>> open;
+  const BorderLoops borders = border_loops(facets);
+  for (const Ring& loop : borders.loops) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      ends.push_back(loop[i]);
+      open.emplace_back(loop[(i + 1) % loop.size()], loop[i]);  // as the facet there runs
+    }
+  }
+  std::vector<Near> near;
+  if (ends.size() > kMostBorderVertices) return near;
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::sort(open.begin(), open.end());
+  const auto units = metres_per_unit(solid);
+  for (std::size_t facet = 0; facet < facets.size(); ++facet) {
+    for (std::size_t r = 0; r < facets[facet].rings.size(); ++r) {
+      const Ring& ring = facets[facet].rings[r];
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const std::pair edge{ring[i], ring[(i + 1) % ring.size()]};
+        if (!std::ranges::binary_search(open, edge)) continue;
+        for (const Index vertex : ends) {
+          if (std::ranges::find(ring, vertex) != ring.end()) continue;
+          const double share = share_if_near(metres_of(solid, edge.first, units),
+                                             metres_of(solid, edge.second, units),
+                                             metres_of(solid, vertex, units), metres);
+          if (share >= 0) near.push_back({facet, r, i, share, vertex});
+        }
+      }
+    }
+  }
+  return near;
+}
+
+std::size_t insert_near(EditedSolid& solid, double metres) {
+  std::size_t inserted = 0;
+  for (std::vector<EditedFacet>& facets : solid.shells) {
+    std::vector<Near> near = near_edges(solid, facets, metres);
+    // From the last place on, so that the places before it stay.
+    std::ranges::sort(near, [](const Near& a, const Near& b) {
+      return std::tie(b.facet, b.ring, b.position, b.share, b.vertex) <
+             std::tie(a.facet, a.ring, a.position, a.share, a.vertex);
+    });
+    for (const Near& one : near) {
+      Ring& ring = facets[one.facet].rings[one.ring];
+      ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(one.position) + 1, one.vertex);
+    }
+    inserted += near.size();
+  }
+  return inserted;
+}
+
+}  // namespace
+
+std::size_t weld(EditedSolid& solid, double metres) {
+  const Result<Solid> before = solid_of(solid);
+  if (!before) return 0;
+  const auto snapped = validate::snap_vertices(*before, metres);
+  if (!snapped) return 0;
+  std::size_t changes = 0;
+  if (snapped->moved > 0) {
+    const geometry::MergedSolid merged = geometry::merge_equal_vertices(snapped->solid);
+    for (auto& facets : solid.shells) {
+      for (EditedFacet& facet : facets) {
+        for (Ring& ring : facet.rings) {
+          for (Index& vertex : ring) vertex = merged.vertex_of[vertex];
+        }
+      }
+    }
+    solid.vertices.assign(merged.solid.vertices().begin(), merged.solid.vertices().end());
+    changes += snapped->moved;
+    mend_rings(solid);
+  }
+  return changes + insert_near(solid, metres);
+}
+
+}  // namespace watertight::repair

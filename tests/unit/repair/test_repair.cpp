@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+
+#include "geometry/canonical_form.h"
+#include "repair/repair.h"
+#include "tests/solids/builders.h"
+#include "tests/solids/defects.h"
+
+namespace watertight::repair {
+namespace {
+
+using Outcome = Repaired::Outcome;
+using solids::Shape;
+
+RepairOptions everything(double weld_metres = 0) {
+  RepairOptions options;
+  options.remedies = {Remedy::rings, Remedy::orientation, Remedy::junctions,
+                      Remedy::weld,  Remedy::facets,      Remedy::fill};
+  options.weld_metres = weld_metres;
+  options.certify.proof = Proof::boundary;
+  return options;
+}
+
+std::uint64_t hash_of(const Solid& solid) {
+  const auto boundary = OrientedBoundary::make(geometry::merge_equal_vertices(solid).solid);
+  REQUIRE(boundary);
+  return geometry::solid_hash(*boundary);
+}
+
+/// The repaired solid; requires that it was repaired with these remedies.
+Solid repaired_with(const Shape& shape, const std::vector<Remedy>& remedies,
+                    const RepairOptions& options = everything()) {
+  const Repaired result = repair(solids::solid_of(shape, solids::millimetres()), nullptr, options);
+  REQUIRE(result.outcome == Outcome::repaired);
+  REQUIRE(result.after);
+  REQUIRE(result.after->certified);
+  CHECK(result.remedies == remedies);
+  return result.after->certified->solid.solid();
+}
+
+Shape a_box() { return {solids::box({0, 0, 0}, {8000, 8000, 8000})}; }
+
+TEST_CASE("a valid solid is not touched") {
+  const Repaired result = repair(solids::solid_of(a_box()), nullptr, everything());
+  CHECK(result.outcome == Outcome::valid_as_read);
+  CHECK(!result.after);
+  CHECK(!result.edits);
+}
+
+TEST_CASE("a repeated point and a spike go") {
+  Shape shape = a_box();
+  solids::Ring& ring = shape[0][0][0];
+  ring.insert(ring.begin() + 1, ring[0]);
+  ring.insert(ring.begin() + 2, {1000, 1000, 0});
+  ring.insert(ring.begin() + 3, ring[0]);
+  CHECK(hash_of(repaired_with(shape, {Remedy::rings})) ==
+        hash_of(solids::solid_of(a_box(), solids::millimetres())));
+}
+
+TEST_CASE("a facet without area and facets back to back go") {
+  Shape shape = a_box();
+  const solids::Facet facet = shape[0][2];
+  shape[0].push_back({{facet[0][0], facet[0][1], facet[0][0]}});
+  shape[0].push_back({{{0, 0, 0}, {4000, 4000, 4000}, {8000, 0, 0}}});
+  shape[0].push_back(solids::turned_over(shape[0].back()));
+  shape[0].push_back(facet);
+  CHECK(hash_of(repaired_with(shape, {Remedy::rings})) ==
+        hash_of(solids::solid_of(a_box(), solids::millimetres())));
+}
+
+TEST_CASE("turned facets are turned back, and a shell inside out is turned") {
+  const std::uint64_t wanted = hash_of(solids::solid_of(a_box(), solids::millimetres()));
+  for (unsigned chosen = 1; chosen < 64; ++chosen) {
+    Shape shape = a_box();
+    for (std::size_t i = 0; i < 6; ++i) {
+      if ((chosen >> i & 1U) != 0) shape[0][i] = solids::turned_over(shape[0][i]);
+    }
+    CHECK(hash_of(repaired_with(shape, {Remedy::orientation})) == wanted);
+  }
+}
+
+TEST_CASE("a cavity that looks outwards is turned, and so is an interior ring") {
+  Shape shape = a_box();
+  shape.push_back(solids::box({1000, 1000, 1000}, {2000, 2000, 2000}));
+  repaired_with(shape, {Remedy::orientation});
+
+  Shape tunnelled{
+      solids::tunnelled_box({0, 0, 0}, {8000, 8000, 8000}, {2000, 2000, 0}, {4000, 4000, 8000})};
+  const std::uint64_t wanted = hash_of(solids::solid_of(tunnelled, solids::millimetres()));
+  tunnelled[0][0][1] = solids::reversed(tunnelled[0][0][1]);
+  CHECK(hash_of(repaired_with(tunnelled, {Remedy::orientation})) == wanted);
+}
+
+TEST_CASE("a vertex in an edge of a neighbour is inserted there") {
+  Shape shape = a_box();
+  // The bottom has two more corners in an edge, in the order in which it runs.
+  solids::Ring& ring = shape[0][0][0];
+  const Point from = ring[0];
+  const Point to = ring[1];
+  const auto between = [&](double share) {
+    return Point{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y),
+                 from.z + share * (to.z - from.z)};
+  };
+  ring.insert(ring.begin() + 1, {between(0.25), between(0.5)});
+  const Solid solid = repaired_with(shape, {Remedy::junctions});
+  CHECK(solid.vertex_count() == 10);
+}
+
+TEST_CASE("vertices closer than the given distance become one, and no others") {
+  Shape shape = a_box();
+  for (Point& corner : shape[0][1][0]) {
+    if (corner == Point{8000, 8000, 8000}) corner = {8000, 8000, 8004};
+  }
+  CHECK(repair(solids::solid_of(shape, solids::millimetres()), nullptr, everything()).outcome !=
+        Outcome::valid_as_read);
+  const Solid solid = repaired_with(shape, {Remedy::weld}, everything(0.005));
+  CHECK(solid.vertex_count() == 8);
+  RepairOptions careful = everything(0.003);
+  std::erase(careful.remedies, Remedy::fill);
+  std::erase(careful.remedies, Remedy::facets);
+  CHECK(repair(solids::solid_of(shape, solids::millimetres()), nullptr, careful).outcome ==
+        Outcome::not_repaired);
+}
+
+TEST_CASE("a vertex near an edge across is inserted there") {
+  Shape shape = a_box();
+  solids::Ring& ring = shape[0][0][0];
+  ring.insert(ring.begin() + 1, Point{std::round((ring[0].x + ring[1].x) / 2),
+                                      std::round((ring[0].y + ring[1].y) / 2), ring[0].z + 2});
+  const Solid solid = repaired_with(shape, {Remedy::weld}, everything(0.003));
+  CHECK(solid.vertex_count() == 9);
+}
+
+TEST_CASE("a facet that is not flat becomes its triangles, and no vertex moves") {
+  Shape shape = a_box();
+  for (solids::Facet& facet : shape[0]) {
+    for (Point& corner : facet[0]) {
+      if (corner == Point{8000, 8000, 8000}) corner = {8000, 8000, 8400};
+    }
+  }
+  const Solid solid = repaired_with(shape, {Remedy::facets});
+  CHECK(solid.vertex_count() == 8);
+  CHECK(solid.facet_count() == 7);
+}
+
+TEST_CASE("each facet of random solids that is taken away comes back") {
+  solids::Random random(20);
+  std::size_t count = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Shape shape = solids::random_valid(random).shape;
+    const std::uint64_t wanted = hash_of(solids::solid_of(shape, solids::millimetres()));
+    for (std::size_t shell = 0; shell < shape.size(); ++shell) {
+      for (std::size_t facet = 0; facet < std::min<std::size_t>(shape[shell].size(), 12); ++facet) {
+        Shape open = shape;
+        open[shell].erase(open[shell].begin() + static_cast<std::ptrdiff_t>(facet));
+        const Repaired result =
+            repair(solids::solid_of(open, solids::millimetres()), nullptr, everything());
+        REQUIRE(result.outcome == Outcome::repaired);
+        CHECK(hash_of(result.after->certified->solid.solid()) == wanted);
+        ++count;
+      }
+    }
+  }
+  CHECK(count > 300);
+}
+
+TEST_CASE("a hole in a facet that bends is filled by triangles") {
+  Shape shape = a_box();
+  for (solids::Facet& facet : shape[0]) {
+    for (Point& corner : facet[0]) {
+      if (corner == Point{8000, 8000, 8000}) corner = {8000, 8000, 8400};
+    }
+  }
+  shape = solids::triangulated(shape);
+  const std::size_t before = shape[0].size();
+  std::erase_if(shape[0], [](const solids::Facet& facet) {
+    return std::ranges::all_of(facet[0], [](const Point& p) { return p.z >= 8000; });
+  });
+  REQUIRE(shape[0].size() == before - 2);
+  const Repaired result =
+      repair(solids::solid_of(shape, solids::millimetres()), nullptr, everything());
+  REQUIRE(result.outcome == Outcome::repaired);
+  REQUIRE(result.holes.size() == 1);
+  CHECK(result.holes[0].method == "plan");
+  CHECK(result.holes[0].facets == 2);
+}
+
+TEST_CASE("a court without a floor gets one facet with a ring") {
+  Shape shape{
+      solids::tunnelled_box({0, 0, 0}, {8000, 8000, 8000}, {2000, 2000, 0}, {4000, 4000, 8000})};
+  const std::uint64_t wanted = hash_of(solids::solid_of(shape, solids::millimetres()));
+  shape[0].erase(shape[0].begin());
+  const Repaired result =
+      repair(solids::solid_of(shape, solids::millimetres()), nullptr, everything());
+  REQUIRE(result.outcome == Outcome::repaired);
+  REQUIRE(result.holes.size() == 1);
+  CHECK(result.holes[0].loops == 2);
+  CHECK(result.holes[0].method == "facet");
+  CHECK(hash_of(result.after->certified->solid.solid()) == wanted);
+}
+
+TEST_CASE("a remedy that was not asked for is not applied") {
+  Shape shape = a_box();
+  shape[0].pop_back();
+  RepairOptions options = everything();
+  options.remedies = RepairOptions().remedies;
+  const Repaired result = repair(solids::solid_of(shape), nullptr, options);
+  CHECK(result.outcome == Outcome::not_repaired);
+  CHECK(!result.after);
+  CHECK(result.before.verdict == Verdict::invalid);
+}
+
+TEST_CASE("defects of any kind are repaired or left alone, never made worse") {
+  solids::Random random(7);
+  std::size_t repaired = 0;
+  for (int round = 0; round < 5; ++round) {
+    for (const solids::DefectMaker make : solids::defect_makers()) {
+      const solids::Defect defect = make(random);
+      const Repaired result =
+          repair(solids::solid_of(defect.shape, solids::millimetres()), nullptr, everything(0.001));
+      if (result.outcome != Outcome::repaired) continue;
+      ++repaired;
+      REQUIRE(result.after);
+      CHECK(result.after->report.verdict == Verdict::valid);
+      const Repaired again = repair(result.after->certified->solid.solid(), nullptr, everything());
+      CHECK(again.outcome == Outcome::valid_as_read);
+    }
+  }
+  CHECK(repaired > 20);
+}
+
+TEST_CASE("how a solid is written does not change what is repaired") {
+  solids::Random random(3);
+  for (int i = 0; i < 40; ++i) {
+    Shape shape = solids::random_valid(random).shape;
+    shape[0].erase(shape[0].begin() + static_cast<std::ptrdiff_t>(random.below(shape[0].size())));
+    const Solid solid = solids::solid_of(shape, solids::millimetres());
+    const Repaired one = repair(solid, nullptr, everything());
+    const Repaired other = repair(solids::rewritten(solid, random).solid, nullptr, everything());
+    REQUIRE(one.outcome == other.outcome);
+    if (one.outcome != Outcome::repaired) continue;
+    CHECK(hash_of(one.after->certified->solid.solid()) ==
+          hash_of(other.after->certified->solid.solid()));
+  }
+}
+
+}  // namespace
+}  // namespace watertight::repair

@@ -114,6 +114,18 @@ struct ConvertCommand {
 };
 Exit run(const ConvertCommand& command);
 
+struct RepairCommand {
+  std::string input;
+  std::string output;
+  std::vector<std::string> remedies{"rings", "orientation", "junctions"};  // or "all"
+  double weld_metres = 0;
+  RuleChoice rules;
+  std::string surfaces = "ignore";  // or "as-solids"
+  bool is_quiet = false;
+  std::size_t jobs = 1;
+};
+Exit run(const RepairCommand& command);
+
 struct TilesCommand {
   std::vector<std::string> files;
   std::string output;  // a folder that is not there yet

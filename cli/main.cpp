@@ -253,6 +253,28 @@ void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
+void add_repair(CLI::App& app, RepairCommand& command, Chosen& chosen) {
+  CLI::App* sub =
+      app.add_subcommand("repair", "Make invalid solids valid by the least change, and prove it");
+  sub->add_option("IN", command.input, "document; - for standard input")->required();
+  sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
+  sub->add_option("--remedies", command.remedies,
+                  "rings, orientation and junctions guess nothing; weld (with --weld), facets and "
+                  "fill do; all: every one")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"rings", "orientation", "junctions", "weld", "facets", "fill", "all"}))
+      ->capture_default_str();
+  sub->add_option("--weld", command.weld_metres, "largest move of a vertex by weld, metres")
+      ->check(in_range(0, 1000, "from 0 to 1000"))
+      ->capture_default_str();
+  add_rules(*sub, command.rules);
+  add_surfaces(*sub, command.surfaces);
+  sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
+  add_jobs(*sub, command.jobs, "solids repaired at once");
+  sub->callback([&] { chosen = [&] { return run(command); }; });
+}
+
 void add_tiles(CLI::App& app, TilesCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand(
       "tiles", "Write documents as a tileset of 3D Tiles 1.1 for web maps, unvalidated");
@@ -443,6 +465,7 @@ int run_command_line(int argc, char** argv) {
   DecodeCommand decode_command;
   InfoCommand info_command;
   ConvertCommand convert_command;
+  RepairCommand repair_command;
   RowsCommand rows_command;
   TilesCommand tiles_command;
   GetCommand get_command;
@@ -465,6 +488,7 @@ int run_command_line(int argc, char** argv) {
   add_tiles(app, tiles_command, chosen);
   add_info(app, info_command, chosen);
   add_convert(app, convert_command, chosen);
+  add_repair(app, repair_command, chosen);
   add_rows(app, rows_command, chosen);
   add_serve(app, serve_command, chosen);
   add_key(app, key_command, chosen);

@@ -57,6 +57,26 @@ Result<Solid> solid_of(const EditedSolid& edited, std::span<const EditedFacet> f
   return Solid::make(std::move(arrays), edited.lattice, edited.srid);
 }
 
+Result<FacetAlone> alone(const EditedSolid& edited, const EditedFacet& facet) {
+  std::vector<Index> vertices;
+  for (const Ring& ring : facet.rings) vertices.insert(vertices.end(), ring.begin(), ring.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  EditedFacet renumbered = facet;
+  for (Ring& ring : renumbered.rings) {
+    for (Index& vertex : ring) {
+      const auto place = std::lower_bound(vertices.begin(), vertices.end(), vertex);
+      vertex = static_cast<Index>(place - vertices.begin());
+    }
+  }
+  SolidArrays arrays;
+  for (const Index vertex : vertices) arrays.vertices.push_back(edited.vertices[vertex]);
+  append(arrays, {&renumbered, 1});
+  auto solid = Solid::make(std::move(arrays), edited.lattice, edited.srid);
+  if (!solid) return std::move(solid).error();
+  return FacetAlone{*std::move(solid), std::move(vertices)};
+}
+
 void turn_over(EditedFacet& facet) {
   for (Ring& ring : facet.rings) std::reverse(ring.begin(), ring.end());
 }

@@ -19,6 +19,7 @@ using Ring = std::vector<Index>;
 struct EditedFacet {
   std::vector<Ring> rings;  // the first one is exterior
   Index source = kNone;     // the facet of the submitted solid; kNone for a new one
+  friend bool operator==(const EditedFacet&, const EditedFacet&) = default;
 };
 
 struct EditedSolid {
@@ -32,6 +33,14 @@ struct EditedSolid {
 EditedSolid edited(const Solid& solid);
 /// The solid of all facets, in their order. Errors: limit_exceeded.
 Result<Solid> solid_of(const EditedSolid& edited);
+/// A facet as a solid of its own vertices.
+struct FacetAlone {
+  Solid solid;
+  std::vector<Index> vertices;  // vertex -> vertex of the edited solid, ascending
+};
+/// Errors: limit_exceeded. Cost: linear in the facet.
+Result<FacetAlone> alone(const EditedSolid& edited, const EditedFacet& facet);
+
 /// A solid of one shell, which need not be closed. Errors: limit_exceeded.
 Result<Solid> solid_of(const EditedSolid& edited, std::span<const EditedFacet> facets);
 

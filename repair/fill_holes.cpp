@@ -20,12 +20,13 @@ constexpr std::size_t kMostLoops = 200;
 /// The canonical triangles of a facet with these rings; none if the rings bound no region.
 std::vector<Ring> triangles_of(const EditedSolid& solid, const EditedFacet& facet) {
   std::vector<Ring> result;
-  const Result<Solid> alone = solid_of(solid, {&facet, 1});
-  if (!alone) return result;
-  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(*alone);
+  const Result<FacetAlone> own = alone(solid, facet);
+  if (!own) return result;
+  const tessellate::FacetTriangles facets = tessellate::triangulate_facets(own->solid);
   if (facets.state[0] != FacetState::triangulated) return result;
   for (const Triangle& triangle : facets.triangles) {
-    result.emplace_back(triangle.begin(), triangle.end());
+    Ring& ring = result.emplace_back();
+    for (const Index vertex : triangle) ring.push_back(own->vertices[vertex]);
   }
   return result;
 }

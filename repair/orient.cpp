@@ -118,9 +118,9 @@ bool is_closed(const std::vector<EditedFacet>& facets) {
 }  // namespace
 
 int turn_of(const EditedSolid& edited, const EditedFacet& facet, const Ring& ring) {
-  const Result<Solid> solid = solid_of(edited, {&facet, 1});
-  if (!solid || ring.size() < 3) return 0;
-  const tessellate::Projection projection = tessellate::facet_projection(*solid, 0);
+  const Result<FacetAlone> own = alone(edited, facet);
+  if (!own || ring.size() < 3) return 0;
+  const tessellate::Projection projection = tessellate::facet_projection(own->solid, 0);
   if (projection.is_degenerate) return 0;
   const auto u = (projection.axis + 1) % 3;
   const auto v = (projection.axis + 2) % 3;

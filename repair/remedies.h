@@ -14,7 +14,7 @@
 
 namespace watertight::repair {
 
-/// Drops repeated points, spikes (a b a) and facets whose points lie on a line; of equal facets one
+/// Drops repeated points, spikes (a b a) and facets whose area vector is zero; of equal facets one
 /// stays, and of two that face each other none. Divides a ring that passes a vertex twice into
 /// facets where all parts turn alike. Exact. Cost: O(n log n), and a triangulation for each facet
 /// that is divided.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 namespace watertight::repair {
@@ -91,11 +92,14 @@ class Trial {
     }
     if (attempt.has_orientation) note(Remedy::orientation, orient(work));
     if (attempt.has_facets) note(Remedy::facets, mend_bent_facets(work));
-    if (changed.empty()) return false;
+    if (changed.empty() || report_on(work) != nullptr) return false;
     const Result<Solid> solid = solid_of(work);
     if (!solid) return false;
     Inspection inspection = certify(*solid, workers_, options_.certify);
-    if (!inspection.certified) return false;
+    if (!inspection.certified) {
+      tried_.push_back({std::move(work), std::move(inspection.report)});
+      return false;
+    }
     std::ranges::sort(changed);
     repaired.outcome = Repaired::Outcome::repaired;
     repaired.after = std::move(inspection);
@@ -106,7 +110,26 @@ class Trial {
   }
 
  private:
+  /// A solid that was judged, and what was found.
+  struct Tried {
+    EditedSolid solid;
+    validate::Report report;
+  };
+
+  /// What was found in these facets; null if they were not judged yet.
+  const validate::Report* report_on(const EditedSolid& work) const {
+    for (const Tried& tried : tried_) {
+      const bool is_same =
+          tried.solid.shells == work.shells && tried.solid.vertices == work.vertices;
+      if (is_same) return &tried.report;
+    }
+    return nullptr;
+  }
+
   std::size_t mend_bent_facets(EditedSolid& work) const {
+    if (const validate::Report* known = report_on(work); known != nullptr) {
+      return triangulate(work, bent_facets(*known));
+    }
     const Result<Solid> solid = solid_of(work);
     if (!solid) return 0;
     CertifyOptions quick = options_.certify;
@@ -115,6 +138,7 @@ class Trial {
   }
 
   EditedSolid start_;
+  std::vector<Tried> tried_;
   delaunay::EngineWorkers* workers_;
   const RepairOptions& options_;
 };
@@ -137,6 +161,28 @@ std::string_view to_string(Remedy remedy) {
       return "fill";
   }
   return "";
+}
+
+Result<OnSubmittedVertices> on_submitted_vertices(const Solid& submitted,
+                                                  const EditedSolid& edits) {
+  std::map<Point, Index> number_of;
+  for (Index vertex = 0; vertex < submitted.vertex_count(); ++vertex) {
+    number_of.emplace(submitted.vertices()[vertex], vertex);
+  }
+  EditedSolid renumbered = edits;
+  renumbered.vertices.assign(submitted.vertices().begin(), submitted.vertices().end());
+  std::vector<Index> source;
+  for (auto& facets : renumbered.shells) {
+    for (EditedFacet& facet : facets) {
+      source.push_back(facet.source);
+      for (Ring& ring : facet.rings) {
+        for (Index& vertex : ring) vertex = number_of.at(edits.vertices[vertex]);
+      }
+    }
+  }
+  auto solid = solid_of(renumbered);
+  if (!solid) return std::move(solid).error();
+  return OnSubmittedVertices{*std::move(solid), std::move(source)};
 }
 
 Repaired repair(const Solid& solid, delaunay::EngineWorkers* workers,

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "repair/remedies.h"
@@ -31,6 +32,15 @@ struct Repaired {
   std::vector<Remedy> remedies;      // those that changed something
   std::vector<HoleFill> holes;
 };
+
+/// A repaired solid on the vertices of the submitted one, all of them in their order.
+struct OnSubmittedVertices {
+  Solid solid;
+  std::vector<Index> facet_source;  // facet -> facet of the submitted solid, kNone for a new one
+};
+/// Requires edits of that solid: no remedy makes a new place. Errors: limit_exceeded. Cost:
+/// O(n log n).
+Result<OnSubmittedVertices> on_submitted_vertices(const Solid& submitted, const EditedSolid& edits);
 
 /// Repairs a solid. Never fails. Deterministic but for time limits of engines. Cost: that of
 /// validating it once for each set of remedies.

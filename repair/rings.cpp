@@ -42,6 +42,16 @@ bool is_on_line(const EditedSolid& solid, const Ring& ring) {
   return true;
 }
 
+/// Drops facets whose doubled area vector is zero. Answers with their number.
+std::size_t drop_without_area(const EditedSolid& edited, std::vector<EditedFacet>& facets) {
+  const Result<Solid> solid = solid_of(edited, facets);
+  if (!solid) return 0;
+  Index number = 0;
+  return std::erase_if(facets, [&](const EditedFacet&) {
+    return tessellate::facet_projection(*solid, number++).is_degenerate;
+  });
+}
+
 /// The ring from its smallest vertex on.
 Ring from_smallest(Ring ring) {
   std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
@@ -129,10 +139,9 @@ std::size_t mend_rings(EditedSolid& solid) {
         ++changes;
       }
     }
-    changes += std::erase_if(facets, [&](const EditedFacet& facet) {
-      return facet.rings.empty() || is_on_line(solid, facet.rings[0]);
-    });
+    changes += std::erase_if(facets, [&](const EditedFacet& facet) { return facet.rings.empty(); });
     changes += divide_rings(solid, facets);
+    changes += drop_without_area(solid, facets);
     changes += drop_duplicates(facets);
   }
   std::erase_if(solid.shells, [](const auto& facets) { return facets.empty(); });

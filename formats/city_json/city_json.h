@@ -102,6 +102,19 @@ std::vector<std::string> object_ids(std::string_view skeleton);
 /// linear, the text of such features as JSON values.
 Result<std::uint64_t> turn_surfaces_into_solids(Document& document);
 
+/// A solid that takes the place of one of a feature.
+struct SolidEdit {
+  std::size_t number = 0;           // of the solid in Feature::solids
+  Solid solid;                      // has the vertices of that solid, all of them in their order
+  std::vector<Index> facet_source;  // facet -> facet of that solid, kNone for a new one
+};
+
+/// Puts other solids into a feature. Semantics, materials and textures follow their facets; a new
+/// facet gets the semantic surface ClosureSurface where the geometry has semantics, and no texture;
+/// nor does a facet whose rings have changed. The bytes of the text that was read do not come back.
+/// Errors: malformed when the skeleton cannot be read. Cost: linear, the skeleton as JSON values.
+Status replace_solids(Feature& feature, std::vector<SolidEdit> edits);
+
 /// The solids of a document of another format as generic city objects of one CityJSON 2.0, on the
 /// finest of their decimal grids. Features of GML that keep their city model (keep_city_model())
 /// become that. Errors: unsupported for coordinates on no decimal grid.

@@ -21,13 +21,13 @@ constexpr std::array kAdvCodes{
     AdvCode{"DE_DHDN_3GK4", 31468},  AdvCode{"DE_DHDN_3GK5", 31469},
 };
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_srs_digit(char c) { return c >= '0' && c <= '9'; }
 
 // The last number of the leading run of digits, dots, colons, slashes and hashes; numbers before it
 // are the version of the data set.
 std::uint32_t last_number(std::string_view text) {
   text = text.substr(0, text.find_first_not_of("0123456789.:/#"));
-  while (!text.empty() && !is_digit(text.back())) text.remove_suffix(1);
+  while (!text.empty() && !is_srs_digit(text.back())) text.remove_suffix(1);
   const std::size_t before = text.find_last_of(":/#");
   if (before != std::string_view::npos) text.remove_prefix(before + 1);
   std::uint32_t code = 0;

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The command repair: documents whose invalid solids are made valid where a remedy does it.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "base/quantity.h"
+#include "cli/commands.h"
+#include "cli/outputs/documents.h"
+#include "cli/sources/input_list.h"
+#include "cli/terminal/printable.h"
+#include "files/files.h"
+#include "files/inputs.h"
+#include "pipeline/repaired/repair_document.h"
+#include "validate/finding_kinds.h"
+
+namespace watertight::cli {
+namespace {
+
+using pipeline::DocumentRepair;
+using pipeline::SolidRepair;
+using repair::Remedy;
+
+constexpr Remedy kRemedies[] = {Remedy::rings, Remedy::orientation, Remedy::junctions,
+                                Remedy::weld,  Remedy::facets,      Remedy::fill};
+
+/// What was done to a solid, or what is wrong with it.
+std::string account_of(const SolidRepair& repair) {
+  std::string text;
+  const auto add = [&](const std::string& part, const char* between) {
+    text.append(text.empty() ? "" : between).append(part);
+  };
+  if (!repair.is_repaired) {
+    for (const int code : repair.codes) {
+      add(std::to_string(code) + ' ' + std::string(validate::finding_name(code)), ", ");
+    }
+    return (repair.is_undecided ? "undecided" : "not repaired: ") + text;
+  }
+  for (const Remedy remedy : repair.remedies) add(std::string(to_string(remedy)), ", ");
+  text = "repaired: " + text;
+  if (repair.facets_added + repair.facets_removed == 0) return text;
+  text += " (" + quantity(repair.facets_added, "facet") + " added, " +
+          std::to_string(repair.facets_removed) + " removed)";
+  return text;
+}
+
+void print(const SolidRepair& repair) {
+  const std::string& object =
+      repair.source.object_id.empty() ? repair.feature : repair.source.object_id;
+  std::string place = printable(object);
+  if (!repair.source.lod.empty()) place += " LoD " + printable(repair.source.lod);
+  std::printf("%s: %s\n", place.c_str(), account_of(repair).c_str());
+}
+
+void print_row(const char* name, std::uint64_t count, int indent = 0) {
+  std::printf("%*s%-*s %9llu\n", indent, "", 44 - indent, name,
+              static_cast<unsigned long long>(count));
+}
+
+void print_table(const DocumentRepair& outcome) {
+  std::map<Remedy, std::uint64_t> by_remedy;
+  std::map<int, std::uint64_t> by_code;
+  std::uint64_t repaired = 0;
+  std::uint64_t undecided = 0;
+  std::uint64_t added = 0;
+  std::uint64_t removed = 0;
+  for (const SolidRepair& repair : outcome.repairs) {
+    added += repair.facets_added;
+    removed += repair.facets_removed;
+    repaired += repair.is_repaired ? 1 : 0;
+    undecided += !repair.is_repaired && repair.is_undecided ? 1 : 0;
+    for (const Remedy remedy : repair.remedies) ++by_remedy[remedy];
+    if (repair.is_repaired) continue;
+    for (const int code : repair.codes) ++by_code[code];
+  }
+  print_row("features", outcome.features);
+  print_row("solids", outcome.solids);
+  print_row("valid as read", outcome.valid_as_read, 2);
+  print_row("repaired", repaired, 2);
+  for (const auto& [remedy, count] : by_remedy) {
+    print_row(std::string(to_string(remedy)).c_str(), count, 4);
+  }
+  print_row("left as they were", outcome.repairs.size() - repaired - undecided, 2);
+  for (const auto& [code, count] : by_code) {
+    const std::string name = std::to_string(code) + ' ' + std::string(validate::finding_name(code));
+    print_row(name.c_str(), count, 4);
+  }
+  print_row("undecided", undecided, 2);
+  print_row("facets added", added);
+  print_row("facets removed", removed);
+}
+
+Exit exit_of_repair(const DocumentRepair& outcome) {
+  Exit exit = Exit::valid;
+  for (const SolidRepair& repair : outcome.repairs) {
+    if (repair.is_repaired) continue;
+    exit = worse(exit, repair.is_undecided ? Exit::undecided : Exit::invalid);
+  }
+  return exit;
+}
+
+/// The document of an argument. A GML document becomes a city model.
+Result<Document> read_to_repair(const RepairCommand& command) {
+  const auto argument = single_input(command.input);
+  if (!argument) return argument.error();
+  const auto whole = files::read_whole(*argument, {});
+  if (!whole) return whole.error();
+  formats::ReadOptions options;
+  options.split_features = false;
+  options.keep_text = true;
+  options.surfaces = surface_rule(command.surfaces).reading;
+  const auto from = formats::detect_format(whole->name, whole->bytes);
+  const auto to = files::format_of_name(command.output);
+  const bool is_city = to && (*to == Format::city_json || *to == Format::city_json_seq);
+  if (from && *from == Format::gml && is_city) {
+    return pipeline::read_to_convert(whole->bytes, Format::gml, *to, options);
+  }
+  options.keep_text = from && (*from == Format::city_json || *from == Format::city_json_seq);
+  auto input = files::load_input(whole->name, whole->bytes, options);
+  if (!input) return std::move(input).error();
+  return std::move(input->document);
+}
+
+}  // namespace
+
+Exit run(const RepairCommand& command) {
+  if (command.output != "-" && files::is_same_file(command.output, command.input)) {
+    return fail(command.input, {ErrorCode::invalid_argument,
+                                "the output '" + command.output + "' would replace the input"});
+  }
+  auto document = read_to_repair(command);
+  if (!document) return fail(command.input, document.error());
+  for (const std::string& note : document->notes) {
+    std::fprintf(stderr, "watertight: %s: %s\n", printable(command.input).c_str(),
+                 printable(note).c_str());
+  }
+  repair::RepairOptions options;
+  options.remedies.clear();
+  const auto is_asked_for = [&](const std::string& name) {
+    return std::ranges::find(command.remedies, name) != command.remedies.end();
+  };
+  for (const Remedy remedy : kRemedies) {
+    if (is_asked_for("all") || is_asked_for(std::string(to_string(remedy)))) {
+      options.remedies.push_back(remedy);
+    }
+  }
+  options.weld_metres = command.weld_metres;
+  validate::GroupOptions groups;  // solids are repaired one by one
+  apply(command.rules, options.certify, groups);
+  delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
+  const auto outcome =
+      pipeline::repair_document(*document, &workers, options, static_cast<unsigned>(command.jobs));
+  if (!outcome) return fail(command.input, outcome.error());
+  if (command.surfaces == "as-solids") {
+    if (const auto turned = formats::turn_surfaces_into_solids(*document); !turned) {
+      return fail(command.input, turned.error());
+    }
+  }
+  const Exit saved = save_documents({&*document, 1}, command.input, command.output);
+  if (saved != Exit::valid) return saved;
+  if (command.output == "-") return exit_of_repair(*outcome);
+  if (!command.is_quiet) {
+    for (const SolidRepair& repair : outcome->repairs) print(repair);
+  }
+  print_table(*outcome);
+  return exit_of_repair(*outcome);
+}
+
+}  // namespace watertight::cli

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Other solids in the place of those of a feature: lists of semantics, materials and textures
+// follow the facets.
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "formats/city_json/model.h"
+
+namespace watertight::formats {
+namespace {
+
+constexpr std::string_view kNewSurface = "ClosureSurface";
+
+bool are_rings_equal(const Solid& one, Index facet, const Solid& other, Index other_facet) {
+  const IndexRange rings = one.rings_of(facet);
+  const IndexRange others = other.rings_of(other_facet);
+  if (rings.size() != others.size()) return false;
+  for (Index i = 0; i < rings.size(); ++i) {
+    if (!std::ranges::equal(one.ring(rings.begin + i), other.ring(others.begin + i))) return false;
+  }
+  return true;
+}
+
+/// Lists by facet for the facets of a solid that replaces another one.
+class FacetLists {
+ public:
+  FacetLists(const Solid& before, const SolidEdit& edit) : before_(before), edit_(edit) {}
+
+  /// The list by shell and facet; `fresh` is the value of new facets. A list of another shape stays
+  /// as it is.
+  Json edited(const Json& values, const Json& fresh, bool has_rings) const {
+    if (!values.is_array() || values.size() != before_.shell_count()) return values;
+    Json out = Json::array();
+    for (Index shell = 0; shell < edit_.solid.shell_count(); ++shell) {
+      const IndexRange facets = edit_.solid.facets_of(shell);
+      Json list = Json::array();
+      bool is_listed = false;
+      for (Index facet = facets.begin; facet < facets.end; ++facet) {
+        const Json* value = value_of(values, edit_.facet_source[facet]);
+        is_listed = is_listed || value != nullptr;
+        if (value == nullptr) {
+          list.push_back(has_rings ? untextured(facet) : fresh);
+        } else if (has_rings &&
+                   !are_rings_equal(edit_.solid, facet, before_, edit_.facet_source[facet])) {
+          list.push_back(untextured(facet));
+        } else {
+          list.push_back(*value);
+        }
+      }
+      if (is_listed) {
+        out.push_back(std::move(list));
+      } else {
+        out.push_back(nullptr);
+      }
+    }
+    return out;
+  }
+
+  bool has_new_facets() const {
+    return std::ranges::find(edit_.facet_source, kNone) != edit_.facet_source.end();
+  }
+
+ private:
+  /// The value of a facet of the solid before; null where there is none.
+  const Json* value_of(const Json& values, Index facet) const {
+    if (facet == kNone) return nullptr;
+    const Index shell = before_.shell_of(facet);
+    const IndexRange facets = before_.facets_of(shell);
+    const Json& list = values[shell];
+    if (!list.is_array() || list.size() != facets.size()) return nullptr;
+    return &list[facet - facets.begin];
+  }
+  Json untextured(Index facet) const {
+    Json rings = Json::array();
+    for (Index i = 0; i < edit_.solid.rings_of(facet).size(); ++i) {
+      rings.push_back(Json::array({nullptr}));
+    }
+    return rings;
+  }
+
+  const Solid& before_;
+  const SolidEdit& edit_;
+};
+
+class Editor {
+ public:
+  Editor(const Feature& feature, std::span<const SolidEdit> edits)
+      : feature_(feature), edits_(edits) {}
+
+  void edit(Json& geometry) const {
+    const Json* boundaries = find_member(geometry, "boundaries");
+    if (boundaries == nullptr || !boundaries->is_object()) return;
+    const Json* surface = find_member(*boundaries, "surface");
+    const Json* single = surface != nullptr ? surface : find_member(*boundaries, "solid");
+    const Json* range = find_member(*boundaries, "solids");
+    const bool is_range = range != nullptr && range->is_array() && range->size() == 2;
+    if (single == nullptr && !is_range) return;
+    const auto first =
+        single != nullptr ? single->get<std::size_t>() : (*range)[0].get<std::size_t>();
+    const auto count = single != nullptr ? 1 : (*range)[1].get<std::size_t>();
+    for (const SolidEdit& edit : edits_) {
+      if (edit.number < first || edit.number - first >= count) continue;
+      const FacetLists lists(feature_.solids[edit.number].solid, edit);
+      const auto replace = [&](Json* owner, const Json& fresh, bool has_rings) {
+        Json* values = owner == nullptr ? nullptr : find_member(*owner, "values");
+        if (values == nullptr) return;
+        if (surface != nullptr) {  // a solid has one list more, of its shells
+          Json shells = lists.edited(Json::array({*values}), fresh, has_rings);
+          *values = std::move(shells.front());
+        } else if (single != nullptr) {
+          *values = lists.edited(*values, fresh, has_rings);
+        } else if (values->is_array() && values->size() == count) {
+          Json& of_solid = (*values)[edit.number - first];
+          of_solid = lists.edited(of_solid, fresh, has_rings);
+        }
+      };
+      replace(find_member(geometry, "semantics"), new_surface(geometry, lists), false);
+      for (const char* appearance : {"material", "texture"}) {
+        Json* themes = find_member(geometry, appearance);
+        if (themes == nullptr || !themes->is_object()) continue;
+        for (auto& [name, theme] : themes->get_ref<Json::object_t&>()) {
+          replace(&theme, nullptr, std::string_view(appearance) == "texture");
+        }
+      }
+    }
+  }
+
+ private:
+  /// The number of the semantic surface of new facets, which is added where it is needed.
+  static Json new_surface(Json& geometry, const FacetLists& lists) {
+    Json* semantics = find_member(geometry, "semantics");
+    Json* surfaces = semantics == nullptr ? nullptr : find_member(*semantics, "surfaces");
+    if (!lists.has_new_facets() || surfaces == nullptr || !surfaces->is_array()) return nullptr;
+    for (std::size_t i = 0; i < surfaces->size(); ++i) {
+      if ((*surfaces)[i].size() == 1 && string_member((*surfaces)[i], "type") == kNewSurface) {
+        return i;
+      }
+    }
+    Json surface = Json::object();
+    append_member(surface, "type", kNewSurface);
+    surfaces->push_back(std::move(surface));
+    return surfaces->size() - 1;
+  }
+
+  const Feature& feature_;
+  std::span<const SolidEdit> edits_;
+};
+
+}  // namespace
+
+Status replace_solids(Feature& feature, std::vector<SolidEdit> edits) {
+  if (!feature.skeleton.empty() && feature.skeleton.starts_with('{')) {
+    auto root = parse_json(feature.skeleton, kOwnText);
+    if (!root) return std::move(root).error();
+    const Editor editor(feature, edits);
+    Json* objects = find_member(*root, "CityObjects");
+    if (objects != nullptr && objects->is_object()) {
+      for (auto& [id, object] : objects->get_ref<Json::object_t&>()) {
+        Json* geometries = find_member(object, "geometry");
+        if (geometries == nullptr || !geometries->is_array()) continue;
+        for (Json& geometry : *geometries) editor.edit(geometry);
+      }
+    }
+    feature.skeleton = json_text(*root);
+  }
+  feature.layout = {};
+  for (SolidEdit& edit : edits) {
+    SubmittedSolid& submitted = feature.solids[edit.number];
+    submitted = SubmittedSolid{std::move(edit.solid), std::move(submitted.source), {}};
+  }
+  return Done{};
+}
+
+}  // namespace watertight::formats

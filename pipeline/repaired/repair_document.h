@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Repairs the solids of a document, and puts the repaired ones into it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "formats/document.h"
+#include "repair/repair.h"
+
+namespace watertight::pipeline {
+
+/// What became of a solid that is not valid as it was read.
+struct SolidRepair {
+  SolidSource source;
+  std::string feature;
+  bool is_repaired = false;
+  bool is_undecided = false;             // the verdict on the solid as it was read
+  std::vector<int> codes;                // the errors of the solid as it was read, ascending
+  std::vector<repair::Remedy> remedies;  // those that changed something
+  std::size_t facets_added = 0;          // new ones, and parts of facets that were divided
+  std::size_t facets_removed = 0;        // those that are gone or divided
+  std::vector<repair::HoleFill> holes;
+};
+
+struct DocumentRepair {
+  std::uint64_t features = 0;
+  std::uint64_t solids = 0;
+  std::uint64_t valid_as_read = 0;
+  std::vector<SolidRepair> repairs;  // in document order
+};
+
+/// Repairs the solids of a document on `threads` threads. Solids that are valid, and those that no
+/// remedy mends, stay as they are, and so do the bytes of features without a repaired solid.
+/// Errors: those of formats::replace_solids(). Cost: that of repair::repair().
+Result<DocumentRepair> repair_document(Document& document, delaunay::EngineWorkers* workers,
+                                       const repair::RepairOptions& options, unsigned threads);
+
+}  // namespace watertight::pipeline

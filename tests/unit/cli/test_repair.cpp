@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch_test_macros.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/files.h"
+#include "tests/unit/cli/fixture.h"
+
+namespace watertight::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::string kInvalid = test::source_path("examples/invalid.city.jsonl");
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_CASE_METHOD(Fixture, "repair mends six of the eleven samples, and says how") {
+  const Ran ran = run("repair " + kInvalid + " -o mended.city.jsonl --remedies all");
+  CHECK(ran.status == 1);
+  for (const char* part :
+       {"open-box LoD 1.2: repaired: fill (1 facet added, 0 removed)",
+        "flipped-facet LoD 1.2: repaired: orientation", "warped-roof LoD 1.2: repaired: facets",
+        "shared-edge LoD 1.2: not repaired: 303 NON_MANIFOLD_CASE",
+        "  repaired                                           6"}) {
+    CHECK(ran.output.find(part) != std::string::npos);
+  }
+  CHECK(run("validate -q mended.city.jsonl").output.find("5 features of 11 are invalid") !=
+        std::string::npos);
+}
+
+TEST_CASE_METHOD(Fixture, "a repaired file does not change again") {
+  CHECK(run("repair " + kInvalid + " -o a.city.jsonl --remedies all -q").status == 1);
+  const Ran again = run("repair a.city.jsonl -o b.city.jsonl --remedies all -q");
+  CHECK(again.status == 1);
+  CHECK(again.output.find("  repaired                                           0") !=
+        std::string::npos);
+  CHECK(read("a.city.jsonl") == read("b.city.jsonl"));
+}
+
+TEST_CASE_METHOD(Fixture, "features without a change come back byte for byte") {
+  CHECK(run("repair " + kInvalid + " -o a.city.jsonl -q").status == 1);
+  const auto before = lines_of(test::read_text(kInvalid));
+  const auto after = lines_of(read("a.city.jsonl"));
+  REQUIRE(before.size() == after.size());
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) changed += before[i] == after[i] ? 0 : 1;
+  CHECK(changed == 3);  // as many solids as remedies that guess nothing mend
+}
+
+TEST_CASE_METHOD(Fixture, "semantics follow their facets, and new facets are closure surfaces") {
+  const std::string header =
+      R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"
+      R"("CityObjects":{},"vertices":[]})";
+  const std::string feature =
+      R"({"type":"CityJSONFeature","id":"b","CityObjects":{"b":{"type":"Building","geometry":[{)"
+      R"("type":"Solid","lod":"2","boundaries":[[[[0,3,2,1]],[[0,1,5,4]],[[6,5,1,2]],)"
+      R"([[2,3,7,6]],[[3,0,4,7]]]],"semantics":{"surfaces":[{"type":"GroundSurface"},)"
+      R"({"type":"WallSurface","name":"east"}],"values":[[0,null,1,null,1]]}}]}},)"
+      R"("vertices":[[0,0,0],[9,0,0],[9,9,0],[0,9,0],[0,0,9],[9,0,9],[9,9,9],[0,9,9]]})";
+  write("open.city.jsonl", header + "\n" + feature + "\n");
+  CHECK(run("repair open.city.jsonl -o closed.city.jsonl --remedies all").status == 0);
+  const Json closed = Json::parse(lines_of(read("closed.city.jsonl")).at(1));
+  const Json& geometry = closed["CityObjects"]["b"]["geometry"][0];
+  CHECK(geometry["boundaries"][0].size() == 6);
+  CHECK(geometry["semantics"]["surfaces"].size() == 3);
+  CHECK(geometry["semantics"]["surfaces"][2] == Json{{"type", "ClosureSurface"}});
+  CHECK(geometry["semantics"]["values"] == Json::parse("[[0,null,1,null,1,2]]"));
+  CHECK(closed["vertices"].size() == 8);
+}
+
+TEST_CASE_METHOD(Fixture, "other formats are repaired too") {
+  write("open.off",
+        "OFF\n8 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+        "4 0 3 2 1\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+  CHECK(run("repair open.off -o closed.obj --remedies fill").status == 0);
+  CHECK(run("validate closed.obj").status == 0);
+}
+
+TEST_CASE_METHOD(Fixture, "repair refuses what makes no sense") {
+  write("bad.city.json", "{");
+  CHECK(run("repair bad.city.json -o out.city.json").status == 2);
+  CHECK(run("repair " + kInvalid).status == 2);
+  CHECK(run("repair " + kInvalid + " -o out.city.jsonl --remedies wish").status == 2);
+  CHECK(run("repair " + kInvalid + " -o out.city.jsonl --weld nan").status == 2);
+  CHECK(run("repair " + kInvalid + " -o out.city.jsonl --weld -1").status == 2);
+  CHECK(run("repair " + kInvalid + " -o no/such/folder.city.jsonl").status == 2);
+  write("same.city.jsonl", test::read_text(kInvalid));
+  CHECK(run("repair same.city.jsonl -o same.city.jsonl").status == 2);
+  CHECK(read("same.city.jsonl") == test::read_text(kInvalid));
+}
+
+}  // namespace
+}  // namespace watertight::test

@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compares measures of SQL with those of exact fractions: exact_measures.py < ROWS
 
-A row of tab-separated columns is a solid: hexadecimal EWKB, the kind of its lattice, then as SQL gave them the volume,
+A row of tab-separated columns is a solid: hexadecimal EWKB, its lattice as wt_solid_info has it, then as SQL gave them the volume,
 the area, the centre of mass as {x,y,z}, a height and the volume below it. Coordinates and the height count as the shortest decimals
 of their doubles on a decimal lattice, and as the doubles on others. Volumes come from fans of triangles; the part below a height
-from prisms under those, cut by the height one by one. The area is a sum of square roots, each cut off after 600 binary digits.
+from prisms under those, cut by the height one by one. The area is a sum of square roots, each cut off after 2,400 binary digits.
 Facets that do not lie in a plane exactly have their canonical triangles (tessellate/facets.h), which are found here in another
-way: any triangles between the rings, then flips of edges. A solid is left out if a vertex of a ring of such a facet lies in an edge of
+way: any triangles between the rings, then flips of edges, in units of the lattice. A solid is left out if a vertex of a ring of such a facet lies in an edge of
 another. Prints the number of solids; exit code 1 after a difference.
 """
+import json
 import math
 import struct
 import sys
@@ -164,21 +165,19 @@ def flipped(triangles, rings):
     return {min((a, b, c), (b, c, a), (c, a, b)) for (a, b), c in behind.items()}
 
 
-def canonical_triangles(facet, srid):
+def canonical_triangles(facet, srid, step):
     """The canonical triangles of a facet that is not flat, in space; None where a vertex of a ring lies in an edge."""
     area = list(map(abs, area_vector(facet[0])))
     if srid in GEOGRAPHIC and all(abs(p[axis]) <= 360 for p in facet[0] for axis in (0, 1)):
         area[2] *= DEGREE
     axis = area.index(max(area))
     is_mirrored = area_vector(facet[0])[axis] < 0
-    place = {}
-    for ring in facet:
-        for p in ring:
-            place[(p[(axis + 1) % 3], p[(axis + 2) % 3])] = p
-    rings = [[(p[(axis + 1) % 3], p[(axis + 2) % 3]) for p in (reversed(ring) if is_mirrored else ring)] for ring in facet]
+    u, v = (axis + 1) % 3, (axis + 2) % 3
+    rings = [[(p[u] / step[u], p[v] / step[v]) for p in (reversed(ring) if is_mirrored else ring)] for ring in facet]
+    place = {(p[u] / step[u], p[v] / step[v]): p for ring in facet for p in ring}
     ring = rings[0]
     if len(rings) == 1 and len(ring) == 4 and all(turn(ring[i - 2], ring[i - 1], ring[i]) > 0 for i in range(4)) and in_circle(*ring) == 0:
-        space = [place[p] for p in ring]
+        space = [tuple(number / unit for number, unit in zip(place[p], step)) for p in ring]
         even, odd = (dot(minus(p, q), minus(p, q)) for p, q in ((space[0], space[2]), (space[1], space[3])))
         is_even = even < odd if even != odd else ring.index(max(ring)) % 2 == 1
         plane = {(ring[0], ring[1], ring[2]), (ring[0], ring[2], ring[3])} if is_even else {(ring[0], ring[1], ring[3]), (ring[1], ring[2], ring[3])}
@@ -238,18 +237,18 @@ def area(pieces):
         if root * root == square:
             rational += root
         else:
-            digits += math.isqrt((square.numerator << 1200) // square.denominator)
-    return (rational + Fraction(digits, 1 << 600)) / 2
+            digits += math.isqrt((square.numerator << 4800) // square.denominator)
+    return (rational + Fraction(digits, 1 << 2400)) / 2
 
 
-def flat_pieces(facets, srid):
+def flat_pieces(facets, srid, step):
     """The facets, or their triangles where they are not flat; None where those are not known."""
     pieces = []
     for facet in facets:
         if is_flat(facet):
             pieces.append(facet)
             continue
-        triangles = canonical_triangles(facet, srid)
+        triangles = canonical_triangles(facet, srid, step)
         if triangles is None:
             return None
         pieces += [[triangle] for triangle in triangles]
@@ -259,9 +258,11 @@ def flat_pieces(facets, srid):
 def main():
     count = left_out = wrong = bent = 0
     for line in sys.stdin:
-        ewkb, lattice, volume, surface, centre, height, below = line.rstrip("\n").split("\t")
+        ewkb, lattice_json, volume, surface, centre, height, below = line.rstrip("\n").split("\t")
+        lattice_facts = json.loads(lattice_json, parse_float=Fraction, parse_int=Fraction)
+        lattice = lattice_facts["kind"]
         facets, srid = facets_of(bytes.fromhex(ewkb), lattice)
-        pieces = flat_pieces(facets, srid)
+        pieces = flat_pieces(facets, srid, [step or 1 for step in lattice_facts["step"]])
         if pieces is None:
             left_out += 1
             continue

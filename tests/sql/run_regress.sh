@@ -192,7 +192,7 @@ if [ -x "$build/bin/encode_documents" ]; then
   # Measures of these solids, and of 10,000 random tetrahedra, against exact fractions.
   measured() {
     query -F"$(printf '\t')" -c "
-      SELECT encode(wt_as_ewkb(shape), 'hex'), wt_solid_info(shape)->'lattice'->>'kind', wt_volume(shape), wt_area(shape),
+      SELECT encode(wt_as_ewkb(shape), 'hex'), wt_solid_info(shape)->'lattice', wt_volume(shape), wt_area(shape),
         wt_centroid(shape), height, wt_volume_below(shape, height)
       FROM (SELECT shape, round((0.3 * wt_bound(wt_bbox(shape), 6) + 0.7 * wt_bound(wt_bbox(shape), 3))::numeric, 4)::float8 AS height
             FROM $1 AS solids) AS cut" |

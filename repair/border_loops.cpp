@@ -63,9 +63,10 @@ void cut_into_simple(const Ring& walk, std::vector<Ring>& loops) {
   std::map<Index, std::size_t> place;
   for (const Index vertex : walk) {
     if (const auto found = place.find(vertex); found != place.end()) {
-      Ring loop(open.begin() + static_cast<std::ptrdiff_t>(found->second), open.end());
+      const std::size_t start = found->second;
+      Ring loop(open.begin() + static_cast<std::ptrdiff_t>(start), open.end());
       for (const Index passed : loop) place.erase(passed);
-      open.resize(found->second);
+      open.resize(start);
       loops.push_back(std::move(loop));
     }
     place[vertex] = open.size();

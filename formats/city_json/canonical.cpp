@@ -234,7 +234,10 @@ class Canonicalizer {
     Json* geometries = find_member(object, "geometry");
     if (geometries != nullptr && geometries->is_array()) {
       for (Json& geometry : *geometries) {
-        if (is_of_solids(geometry)) arrange_geometry(geometry);
+        visit_facet_values(geometry, [this](std::size_t i, Json& values, FacetValues kind) {
+          if (i >= solids_.size()) return;
+          values = arranged_solid(values, solids_[i], kind == FacetValues::texture);
+        });
       }
     }
     return for_each_address_vertex(object, [this](Json& vertex) -> Status {
@@ -243,41 +246,6 @@ class Canonicalizer {
       }
       return Done{};
     });
-  }
-
-  void arrange_geometry(Json& geometry) {
-    const Json* boundaries = find_member(geometry, "boundaries");
-    const Json* surface = find_member(*boundaries, "surface");
-    const Json* single = surface != nullptr ? surface : find_member(*boundaries, "solid");
-    const Json* range = find_member(*boundaries, "solids");
-    const bool is_range = range != nullptr && range->is_array() && range->size() == 2;
-    if (single == nullptr && !is_range) return;
-    const auto first =
-        single != nullptr ? single->get<std::size_t>() : (*range)[0].get<std::size_t>();
-    const auto count = single != nullptr ? 1 : (*range)[1].get<std::size_t>();
-    if (first > solids_.size() || count > solids_.size() - first) return;
-    const auto arrange_values = [&](Json* owner, bool has_rings) {
-      Json* values = owner == nullptr ? nullptr : find_member(*owner, "values");
-      if (values == nullptr) return;
-      if (surface != nullptr) {  // a solid has one list more, of its shells
-        Json shells = arranged_solid(Json::array({*values}), solids_[first], has_rings);
-        *values = std::move(shells.front());
-      } else if (single != nullptr) {
-        *values = arranged_solid(*values, solids_[first], has_rings);
-      } else if (values->is_array() && values->size() == count) {
-        for (std::size_t i = 0; i < count; ++i) {
-          (*values)[i] = arranged_solid((*values)[i], solids_[first + i], has_rings);
-        }
-      }
-    };
-    arrange_values(find_member(geometry, "semantics"), false);
-    for (const char* appearance : {"material", "texture"}) {
-      Json* themes = find_member(geometry, appearance);
-      if (themes == nullptr || !themes->is_object()) continue;
-      for (auto& [name, theme] : themes->get_ref<Json::object_t&>()) {
-        arrange_values(&theme, std::string_view(appearance) == "texture");
-      }
-    }
   }
 
   std::string print() const {

@@ -166,6 +166,14 @@ Status for_each_address_vertex(Json& object, Visit visit) {
   return Done{};
 }
 
+/// The lists of a geometry that have a value for each facet; those of textures have one for each
+/// ring of it.
+enum class FacetValues : std::uint8_t { semantics, material, texture };
+/// Takes the number of a solid of the feature and its values by shell and facet.
+using FacetValuesVisit = std::function<void(std::size_t solid, Json& values, FacetValues kind)>;
+/// Visits the lists of a geometry of a skeleton, solid by solid; none for other geometries.
+void visit_facet_values(Json& geometry, const FacetValuesVisit& visit);
+
 /// Appends boundaries as nested arrays, with `vertex_of(i)` in place of index i.
 template <class VertexOf>
 void append_boundary(std::string& out, std::span<const BoundaryToken> tokens, VertexOf vertex_of) {

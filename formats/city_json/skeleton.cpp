@@ -160,10 +160,42 @@ std::string skeleton_vertices(const CityModel& model, std::size_t count,
 
 namespace {
 
-/// Puts the values of facets into a list of one shell.
-void add_shell(Json* owner) {
-  Json* values = owner == nullptr ? nullptr : find_member(*owner, "values");
-  if (values != nullptr && values->is_array()) *values = Json::array({std::move(*values)});
+/// The solids of a geometry of a skeleton.
+struct SolidRange {
+  std::size_t first = 0;
+  std::size_t count = 0;    // 0: the geometry has none
+  bool is_surface = false;  // one closed surface, whose lists have no level of shells
+  bool is_single = false;   // lists have no level of solids
+};
+
+SolidRange solids_of(const Json& geometry) {
+  SolidRange range;
+  const Json* boundaries = find_member(geometry, "boundaries");
+  if (boundaries == nullptr || !boundaries->is_object()) return range;
+  const Json* surface = find_member(*boundaries, "surface");
+  const Json* single = surface != nullptr ? surface : find_member(*boundaries, "solid");
+  if (single != nullptr && single->is_number_unsigned()) {
+    return {single->get<std::size_t>(), 1, surface != nullptr, true};
+  }
+  const Json* several = find_member(*boundaries, "solids");
+  if (several == nullptr || !several->is_array() || several->size() != 2) return range;
+  const Json& first = (*several)[0];
+  const Json& count = (*several)[1];
+  if (!first.is_number_unsigned() || !count.is_number_unsigned()) return range;
+  return {first.get<std::size_t>(), count.get<std::size_t>(), false, false};
+}
+
+/// Calls visit(owner of "values", kind) for the semantics, materials and textures of a geometry.
+template <class Visit>
+void visit_owners(Json& geometry, const Visit& visit) {
+  if (Json* semantics = find_member(geometry, "semantics"); semantics != nullptr) {
+    visit(*semantics, FacetValues::semantics);
+  }
+  for (const FacetValues kind : {FacetValues::material, FacetValues::texture}) {
+    Json* themes = find_member(geometry, kind == FacetValues::material ? "material" : "texture");
+    if (themes == nullptr || !themes->is_object()) continue;
+    for (auto& [name, theme] : themes->get_ref<Json::object_t&>()) visit(theme, kind);
+  }
 }
 
 void turn(Json& geometry) {
@@ -174,15 +206,31 @@ void turn(Json& geometry) {
   append_member(reference, "solid", *number);
   *boundaries = std::move(reference);
   *find_member(geometry, "type") = "Solid";
-  add_shell(find_member(geometry, "semantics"));
-  for (const char* appearance : {"material", "texture"}) {
-    Json* themes = find_member(geometry, appearance);
-    if (themes == nullptr || !themes->is_object()) continue;
-    for (auto& [name, theme] : themes->get_ref<Json::object_t&>()) add_shell(&theme);
-  }
+  visit_owners(geometry, [](Json& owner, FacetValues) {
+    Json* values = find_member(owner, "values");
+    if (values != nullptr && values->is_array()) *values = Json::array({std::move(*values)});
+  });
 }
 
 }  // namespace
+
+void visit_facet_values(Json& geometry, const FacetValuesVisit& visit) {
+  const SolidRange range = solids_of(geometry);
+  if (range.count == 0) return;
+  visit_owners(geometry, [&](Json& owner, FacetValues kind) {
+    Json* values = find_member(owner, "values");
+    if (values == nullptr) return;
+    if (range.is_surface) {
+      Json shells = Json::array({std::move(*values)});
+      visit(range.first, shells, kind);
+      *values = std::move(shells.front());
+    } else if (range.is_single) {
+      visit(range.first, *values, kind);
+    } else if (values->is_array() && values->size() == range.count) {
+      for (std::size_t i = 0; i < range.count; ++i) visit(range.first + i, (*values)[i], kind);
+    }
+  });
+}
 
 Result<std::uint64_t> turn_surfaces_into_solids(Document& document) {
   std::uint64_t turned = 0;

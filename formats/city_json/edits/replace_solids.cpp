@@ -3,7 +3,7 @@
 // Other solids in the place of those of a feature: lists of semantics, materials and textures
 // follow the facets.
 #include <algorithm>
-#include <optional>
+#include <span>
 #include <utility>
 
 #include "formats/city_json/model.h"
@@ -84,69 +84,32 @@ class FacetLists {
   const SolidEdit& edit_;
 };
 
-class Editor {
- public:
-  Editor(const Feature& feature, std::span<const SolidEdit> edits)
-      : feature_(feature), edits_(edits) {}
-
-  void edit(Json& geometry) const {
-    const Json* boundaries = find_member(geometry, "boundaries");
-    if (boundaries == nullptr || !boundaries->is_object()) return;
-    const Json* surface = find_member(*boundaries, "surface");
-    const Json* single = surface != nullptr ? surface : find_member(*boundaries, "solid");
-    const Json* range = find_member(*boundaries, "solids");
-    const bool is_range = range != nullptr && range->is_array() && range->size() == 2;
-    if (single == nullptr && !is_range) return;
-    const auto first =
-        single != nullptr ? single->get<std::size_t>() : (*range)[0].get<std::size_t>();
-    const auto count = single != nullptr ? 1 : (*range)[1].get<std::size_t>();
-    for (const SolidEdit& edit : edits_) {
-      if (edit.number < first || edit.number - first >= count) continue;
-      const FacetLists lists(feature_.solids[edit.number].solid, edit);
-      const auto replace = [&](Json* owner, const Json& fresh, bool has_rings) {
-        Json* values = owner == nullptr ? nullptr : find_member(*owner, "values");
-        if (values == nullptr) return;
-        if (surface != nullptr) {  // a solid has one list more, of its shells
-          Json shells = lists.edited(Json::array({*values}), fresh, has_rings);
-          *values = std::move(shells.front());
-        } else if (single != nullptr) {
-          *values = lists.edited(*values, fresh, has_rings);
-        } else if (values->is_array() && values->size() == count) {
-          Json& of_solid = (*values)[edit.number - first];
-          of_solid = lists.edited(of_solid, fresh, has_rings);
-        }
-      };
-      replace(find_member(geometry, "semantics"), new_surface(geometry, lists), false);
-      for (const char* appearance : {"material", "texture"}) {
-        Json* themes = find_member(geometry, appearance);
-        if (themes == nullptr || !themes->is_object()) continue;
-        for (auto& [name, theme] : themes->get_ref<Json::object_t&>()) {
-          replace(&theme, nullptr, std::string_view(appearance) == "texture");
-        }
-      }
-    }
+/// The number of the semantic surface of new facets, which is added where it is missing; null
+/// without semantics.
+Json new_surface(Json& geometry) {
+  Json* semantics = find_member(geometry, "semantics");
+  Json* surfaces = semantics == nullptr ? nullptr : find_member(*semantics, "surfaces");
+  if (surfaces == nullptr || !surfaces->is_array()) return nullptr;
+  for (std::size_t i = 0; i < surfaces->size(); ++i) {
+    const Json& surface = (*surfaces)[i];
+    if (surface.size() == 1 && string_member(surface, "type") == kNewSurface) return i;
   }
+  Json surface = Json::object();
+  append_member(surface, "type", kNewSurface);
+  surfaces->push_back(std::move(surface));
+  return surfaces->size() - 1;
+}
 
- private:
-  /// The number of the semantic surface of new facets, which is added where it is needed.
-  static Json new_surface(Json& geometry, const FacetLists& lists) {
-    Json* semantics = find_member(geometry, "semantics");
-    Json* surfaces = semantics == nullptr ? nullptr : find_member(*semantics, "surfaces");
-    if (!lists.has_new_facets() || surfaces == nullptr || !surfaces->is_array()) return nullptr;
-    for (std::size_t i = 0; i < surfaces->size(); ++i) {
-      if ((*surfaces)[i].size() == 1 && string_member((*surfaces)[i], "type") == kNewSurface) {
-        return i;
-      }
-    }
-    Json surface = Json::object();
-    append_member(surface, "type", kNewSurface);
-    surfaces->push_back(std::move(surface));
-    return surfaces->size() - 1;
-  }
-
-  const Feature& feature_;
-  std::span<const SolidEdit> edits_;
-};
+void edit_values(Json& geometry, const Feature& feature, std::span<const SolidEdit> edits) {
+  visit_facet_values(geometry, [&](std::size_t number, Json& values, FacetValues kind) {
+    const auto edit = std::ranges::find(edits, number, &SolidEdit::number);
+    if (edit == edits.end()) return;
+    const FacetLists lists(feature.solids[number].solid, *edit);
+    const bool needs_surface = kind == FacetValues::semantics && lists.has_new_facets();
+    const Json fresh = needs_surface ? new_surface(geometry) : Json(nullptr);
+    values = lists.edited(values, fresh, kind == FacetValues::texture);
+  });
+}
 
 }  // namespace
 
@@ -154,13 +117,12 @@ Status replace_solids(Feature& feature, std::vector<SolidEdit> edits) {
   if (!feature.skeleton.empty() && feature.skeleton.starts_with('{')) {
     auto root = parse_json(feature.skeleton, kOwnText);
     if (!root) return std::move(root).error();
-    const Editor editor(feature, edits);
     Json* objects = find_member(*root, "CityObjects");
     if (objects != nullptr && objects->is_object()) {
       for (auto& [id, object] : objects->get_ref<Json::object_t&>()) {
         Json* geometries = find_member(object, "geometry");
         if (geometries == nullptr || !geometries->is_array()) continue;
-        for (Json& geometry : *geometries) editor.edit(geometry);
+        for (Json& geometry : *geometries) edit_values(geometry, feature, edits);
       }
     }
     feature.skeleton = json_text(*root);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/quantity.h"
+#include "validate/finding_kinds.h"
 
 namespace watertight::cli {
 namespace {
@@ -43,14 +44,6 @@ std::string decimals(double value, int digits) {
   std::array<char, 64> buffer{};
   const int length = std::snprintf(buffer.data(), buffer.size(), "%.*f", digits, value);
   return std::string(buffer.data(), static_cast<std::size_t>(std::max(length, 0)));
-}
-
-std::set<int> error_codes(const std::vector<Finding>& findings) {
-  std::set<int> codes;
-  for (const Finding& finding : findings) {
-    if (finding.severity == Severity::error) codes.insert(finding.code);
-  }
-  return codes;
 }
 
 }  // namespace
@@ -162,7 +155,7 @@ void Summary::add(const Report& report) {
     ++by_rung_[report.rung];
   } else if (report.verdict == Verdict::invalid) {
     ++invalid_;
-    for (const int code : error_codes(report.findings)) ++by_code_[code];
+    for (const int code : validate::error_codes(report.findings)) ++by_code_[code];
   } else {
     ++undecided_;
   }
@@ -170,7 +163,7 @@ void Summary::add(const Report& report) {
 
 void Summary::add(const std::vector<pipeline::InspectedGroup>& groups) {
   for (const pipeline::InspectedGroup& group : groups) {
-    for (const int code : error_codes(group.report.findings)) ++groups_by_code_[code];
+    for (const int code : validate::error_codes(group.report.findings)) ++groups_by_code_[code];
   }
 }
 

@@ -166,4 +166,12 @@ std::string_view to_string(Severity severity) {
   return severity == Severity::error ? "error" : "warning";
 }
 
+std::set<int> error_codes(std::span<const Finding> findings) {
+  std::set<int> codes;
+  for (const Finding& finding : findings) {
+    if (finding.severity == Severity::error) codes.insert(finding.code);
+  }
+  return codes;
+}
+
 }  // namespace watertight::validate

@@ -4,6 +4,7 @@
 // them. Numbers and names up to 799 are val3dity's; a number is never reused.
 #pragma once
 
+#include <set>
 #include <span>
 #include <string_view>
 
@@ -74,5 +75,8 @@ const FindingKind* find_kind(int code);
 /// The level of a code, by which findings are ordered: 0 input, 1 ring, 2 facet, 3 shell, 4 solid,
 /// 5 composite solid, 6 building, 7 indoor model, 9 warnings.
 int finding_level(int code);
+
+/// The codes of the errors among findings.
+std::set<int> error_codes(std::span<const Finding> findings);
 
 }  // namespace watertight::validate

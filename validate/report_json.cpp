@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -237,11 +236,7 @@ std::string report_json(const Report& report, const Solid& submitted,
   if (!report.undecided_reason.empty()) json["undecided_reason"] = report.undecided_reason;
   json["parameters"] = parameters_json(report.acceptance);
   if (options.is_strict) json["parameters"]["strict"] = true;
-  std::set<int> codes;
-  for (const Finding& finding : report.findings) {
-    if (finding.severity == Severity::error) codes.insert(finding.code);
-  }
-  json["all_errors"] = codes;
+  json["all_errors"] = error_codes(report.findings);
   json["first_level"] = report.first_level;
   if (report.tolerant) {
     json["tolerant"] = {{"verdict", to_string(report.tolerant->verdict)},

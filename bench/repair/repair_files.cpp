@@ -12,12 +12,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <set>
 #include <string>
 
 #include "bench/input.h"
 #include "geometry/canonical_form.h"
 #include "repair/repair.h"
+#include "validate/finding_kinds.h"
 
 using namespace watertight;
 
@@ -32,12 +32,8 @@ struct Counts {
 };
 
 std::string codes_of(const validate::Report& report) {
-  std::set<int> codes;
-  for (const Finding& finding : report.findings) {
-    if (finding.severity == Severity::error) codes.insert(finding.code);
-  }
   std::string text;
-  for (const int code : codes) {
+  for (const int code : validate::error_codes(report.findings)) {
     if (!text.empty()) text.append("+");
     text.append(std::to_string(code));
   }

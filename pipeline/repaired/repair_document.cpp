@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "formats/city_json/city_json.h"
 #include "geometry/parallel.h"
+#include "validate/finding_kinds.h"
 
 namespace watertight::pipeline {
 namespace {
@@ -19,14 +19,6 @@ struct SolidPlace {
   std::size_t feature = 0;
   std::size_t solid = 0;
 };
-
-std::vector<int> errors_of(const validate::Report& report) {
-  std::set<int> codes;
-  for (const Finding& finding : report.findings) {
-    if (finding.severity == Severity::error) codes.insert(finding.code);
-  }
-  return {codes.begin(), codes.end()};
-}
 
 /// Counts facets that came or went; one that was divided went, and its parts came.
 void count_facets(const Solid& before, const std::vector<Index>& source, SolidRepair& repair) {
@@ -52,7 +44,7 @@ SolidRepair described(const Feature& feature, const SubmittedSolid& submitted,
   repair.feature = feature.id;
   repair.is_repaired = repaired.outcome == Repaired::Outcome::repaired;
   repair.is_undecided = repaired.before.verdict == Verdict::undecided;
-  repair.codes = errors_of(repaired.before);
+  repair.codes = validate::error_codes(repaired.before.findings);
   repair.remedies = repaired.remedies;
   repair.holes = repaired.holes;
   return repair;

@@ -3,7 +3,7 @@
 // Repairs the solids of a document, and puts the repaired ones into it.
 #pragma once
 
-#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,7 +18,7 @@ struct SolidRepair {
   std::string feature;
   bool is_repaired = false;
   bool is_undecided = false;             // the verdict on the solid as it was read
-  std::vector<int> codes;                // the errors of the solid as it was read, ascending
+  std::set<int> codes;                   // the errors of the solid as it was read
   std::vector<repair::Remedy> remedies;  // those that changed something
   std::size_t facets_added = 0;          // new ones, and parts of facets that were divided
   std::size_t facets_removed = 0;        // those that are gone or divided

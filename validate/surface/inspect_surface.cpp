@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/quantity.h"
+#include "validate/finding_kinds.h"
 #include "validate/rules/rules.h"
 
 namespace watertight::validate {
@@ -26,10 +27,7 @@ void judge_as_solid(const Solid& surface, CertifyOptions options, SurfaceFacts& 
   options.also_tolerant = false;
   const Report report = certify(surface, nullptr, options).report;
   facts.as_solid = report.verdict;
-  std::set<int> codes;
-  for (const Finding& finding : report.findings) {
-    if (finding.severity == Severity::error) codes.insert(finding.code);
-  }
+  const std::set<int> codes = error_codes(report.findings);
   facts.solid_codes.assign(codes.begin(), codes.end());
 }
 

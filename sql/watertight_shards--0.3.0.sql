@@ -35,6 +35,12 @@ CREATE FUNCTION wt_on_shard(shard text, statement text) RETURNS text LANGUAGE pl
   END $$;
 COMMENT ON FUNCTION wt_on_shard(text, text) IS 'the answer of a shard to a statement, which is committed there at once';
 
+-- Closes the connections whose names begin with a text.
+CREATE FUNCTION wt_hang_up(start text) RETURNS void LANGUAGE sql AS $$
+  SELECT dblink_disconnect(name) FROM unnest(dblink_get_connections()) AS name WHERE starts_with(name, start)
+$$;
+COMMENT ON FUNCTION wt_hang_up(text) IS 'closes the connections of dblink whose names begin with a text';
+
 CREATE FUNCTION wt_add_shard(shard text, host text, port int, dbname text, username text, password text DEFAULT NULL)
   RETURNS void LANGUAGE plpgsql AS $$
   DECLARE
@@ -74,6 +80,14 @@ CREATE FUNCTION wt_part_statements(parent regclass, part text) RETURNS text LANG
 $$;
 COMMENT ON FUNCTION wt_part_statements(regclass, text) IS 'the statements that make the table of a part on its shard';
 
+-- Makes the foreign table of a part, whose rows are on a shard.
+CREATE FUNCTION wt_attach_part(parent regclass, part text, modulus int, remainder int, shard text) RETURNS void LANGUAGE plpgsql AS $$
+  BEGIN
+    EXECUTE format('CREATE FOREIGN TABLE %I.%I PARTITION OF %s FOR VALUES WITH (MODULUS %s, REMAINDER %s) SERVER %I OPTIONS (schema_name %L, table_name %L)',
+      (SELECT relnamespace::regnamespace::text FROM pg_class WHERE oid = parent), part, parent, modulus, remainder, shard, 'public', part);
+  END $$;
+COMMENT ON FUNCTION wt_attach_part(regclass, text, int, int, text) IS 'makes the foreign table of a part';
+
 CREATE FUNCTION wt_spread(parent regclass, parts int, shards text[]) RETURNS void LANGUAGE plpgsql AS $$
   DECLARE
     name name := (SELECT relname FROM pg_class WHERE oid = parent);
@@ -91,8 +105,7 @@ CREATE FUNCTION wt_spread(parent regclass, parts int, shards text[]) RETURNS voi
       part := name || '_' || i;
       shard := shards[i % cardinality(shards) + 1];
       PERFORM @extschema@.wt_on_shard(shard, @extschema@.wt_part_statements(parent, part) || '; SELECT ''''');
-      EXECUTE format('CREATE FOREIGN TABLE %I.%I PARTITION OF %s FOR VALUES WITH (MODULUS %s, REMAINDER %s) SERVER %I OPTIONS (schema_name %L, table_name %L)',
-        (SELECT relnamespace::regnamespace::text FROM pg_class WHERE oid = parent), part, parent, parts, i, shard, 'public', part);
+      PERFORM @extschema@.wt_attach_part(parent, part, parts, i, shard);
     END LOOP;
   END $$;
 COMMENT ON FUNCTION wt_spread(regclass, int, text[]) IS
@@ -159,14 +172,10 @@ CREATE FUNCTION wt_load(parent regclass, query text, batch int DEFAULT 500, skip
       END LOOP;
     END LOOP;
     DROP TABLE pg_temp.wt_load_rows;
-    FOREACH one IN ARRAY coalesce(dblink_get_connections(), '{}') LOOP
-      IF one LIKE 'wt\_load\_%' THEN PERFORM dblink_disconnect(one); END IF;
-    END LOOP;
+    PERFORM @extschema@.wt_hang_up('wt_load_');
     RETURN QUERY SELECT c.key, c.value::bigint FROM jsonb_each_text(counts) c ORDER BY 1;
   EXCEPTION WHEN OTHERS THEN
-    FOREACH one IN ARRAY coalesce(dblink_get_connections(), '{}') LOOP
-      IF one LIKE 'wt\_load\_%' THEN PERFORM dblink_disconnect(one); END IF;
-    END LOOP;
+    PERFORM @extschema@.wt_hang_up('wt_load_');
     RAISE;
   END $$;
 COMMENT ON FUNCTION wt_load(regclass, text, int, boolean) IS
@@ -176,7 +185,6 @@ CREATE FUNCTION wt_ask_parts(parent regclass, query text, OUT part text, OUT sha
   LANGUAGE plpgsql AS $$
   DECLARE
     asked record;
-    one text;
   BEGIN
     FOR asked IN
         SELECT p.shard, string_agg(format('SELECT %L::text, to_jsonb(q) FROM (%s) q', c.relname,
@@ -193,9 +201,7 @@ CREATE FUNCTION wt_ask_parts(parent regclass, query text, OUT part text, OUT sha
       PERFORM dblink_disconnect('wt_ask_' || wt_ask_parts.shard);
     END LOOP;
   EXCEPTION WHEN OTHERS THEN
-    FOREACH one IN ARRAY coalesce(dblink_get_connections(), '{}') LOOP
-      IF one LIKE 'wt\_ask\_%' THEN PERFORM dblink_disconnect(one); END IF;
-    END LOOP;
+    PERFORM @extschema@.wt_hang_up('wt_ask_');
     RAISE;
   END $$;
 COMMENT ON FUNCTION wt_ask_parts(regclass, text) IS
@@ -205,7 +211,6 @@ CREATE PROCEDURE wt_move_part(part regclass, target text) LANGUAGE plpgsql AS $$
   DECLARE
     home record;
     name name := (SELECT relname FROM pg_class WHERE oid = part);
-    schema name := (SELECT relnamespace::regnamespace::text FROM pg_class WHERE oid = part);
     columns text;
     declared text;
     sum text := format('SELECT count(*) || '' '' || coalesce(sum(hashtextextended(x::text, 0)), 0) FROM public.%I x', name);
@@ -242,8 +247,7 @@ CREATE PROCEDURE wt_move_part(part regclass, target text) LANGUAGE plpgsql AS $$
       RAISE 'the rows of % are others on shard %', part, target USING ERRCODE = 'data_corrupted';
     END IF;
     EXECUTE format('DROP FOREIGN TABLE %s', part);
-    EXECUTE format('CREATE FOREIGN TABLE %I.%I PARTITION OF %s FOR VALUES WITH (MODULUS %s, REMAINDER %s) SERVER %I OPTIONS (schema_name %L, table_name %L)',
-      schema, name, home.parent, home.modulus, home.remainder, target, 'public', name);
+    PERFORM @extschema@.wt_attach_part(home.parent, name, home.modulus, home.remainder, target);
     COMMIT;
     PERFORM @extschema@.wt_on_shard(home.shard, format('DROP TABLE public.%I; SELECT ''''', name));
   END $$;

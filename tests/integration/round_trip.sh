@@ -70,16 +70,21 @@ for name in db service; do
 done
 compose down --volumes --timeout 5 >"$folder/down.log" 2>&1
 
+# The exit status of `compose up` is ignored here too.
 shards up --detach --no-build >"$folder/up.log" 2>&1 || true
+for name in coordinator east west; do
+  podman container exists "${project}-shards_${name}_1" || { cat "$folder/up.log"; exit 1; }
+done
 coordinator() {
   psql -X -q -At -v ON_ERROR_STOP=1 -v password="$POSTGRES_PASSWORD" \
     "postgresql://watertight:$POSTGRES_PASSWORD@127.0.0.1:$COORDINATOR_PORT/watertight" "$@"
 }
-for ((try = 0; try < 120; try++)); do
-  if coordinator -f docker/shards.sql >"$folder/shards.log" 2>&1; then break; fi
+tries=0
+until coordinator -f docker/shards.sql >"$folder/shards.log" 2>&1; do
+  tries=$((tries + 1))
+  [ $tries -lt 120 ] || { cat "$folder/shards.log"; echo "round_trip: the shards do not answer" >&2; exit 1; }
   sleep 1
 done
-cat "$folder/shards.log"
 coordinator -c "CREATE TABLE city (id text NOT NULL, shape solid) PARTITION BY HASH (id)" -c "SELECT wt_spread('city', 4, '{east,west}')"
 stored=$(build/release/bin/watertight rows examples/delft.city.jsonl | coordinator \
   -c "CREATE TEMP TABLE delivered (feature text, object text, lod text, ewkb bytea)" -c "COPY delivered FROM STDIN" \

@@ -16,10 +16,9 @@ constexpr double kTan3 = 0.6681786379192989;   // tan(3 pi / 16)
 double small_arctangent(double z) {
   const double s = z * z;
   const double series =
-      1.0 +
-      s * (-1.0 / 3 +
-           s * (1.0 / 5 +
-                s * (-1.0 / 7 + s * (1.0 / 9 + s * (-1.0 / 11 + s * (1.0 / 13 - s / 15))))));
+      1.0 + s * (-1.0 / 3 +
+                 s * (1.0 / 5 +
+                      s * (-1.0 / 7 + s * (1.0 / 9 + s * (-1.0 / 11 + s * (1.0 / 13 - s / 15))))));
   return z * series;
 }
 

@@ -139,7 +139,8 @@ Turn Candidates::turn_of(EdgeNumber edge, const Vector3& direction) const {
 
 std::uint64_t Candidates::area(Vertex a, Vertex b, Vertex c) const {
   const auto& places = borders_.places;
-  const double twice = geometry::length(geometry::cross(places[b] - places[a], places[c] - places[a]));
+  const double twice =
+      geometry::length(geometry::cross(places[b] - places[a], places[c] - places[a]));
   return static_cast<std::uint64_t>(twice / (2 * area_unit_) + 0.5);
 }
 

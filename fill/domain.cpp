@@ -53,7 +53,8 @@ bool contains(const Borders& borders, const Domain& domain, Vertex vertex) {
     const Span& span = domain.spans[i];
     if (borders.loop[span.head] != loop) continue;
     if (span.sense == Sense::none) return vertex == span.head;
-    return steps_along(borders, span.sense, span.head, vertex) <= segment_length(borders, domain, i);
+    return steps_along(borders, span.sense, span.head, vertex) <=
+           segment_length(borders, domain, i);
   }
   return false;
 }
@@ -61,9 +62,8 @@ bool contains(const Borders& borders, const Domain& domain, Vertex vertex) {
 bool has_candidates(const Borders& borders, const Candidates& candidates, const Domain& domain) {
   const auto end = domain.spans.begin() + domain.size;
   return std::all_of(domain.spans.begin(), end, [&](const Span& span) {
-    return std::ranges::any_of(candidates.thirds(span.edge), [&](Vertex third) {
-      return contains(borders, domain, third);
-    });
+    return std::ranges::any_of(candidates.thirds(span.edge),
+                               [&](Vertex third) { return contains(borders, domain, third); });
   });
 }
 
@@ -134,7 +134,8 @@ void Splitter::divide(const Domain& domain, const Sides& sides, std::size_t segm
   first.spans[0] = sides.first;
   first.spans[0].sense = is_at_end ? Sense::none : sense;
   first.size = 1;
-  for (std::size_t i = segment + 1; i < domain.size; ++i) first.spans[first.size++] = domain.spans[i];
+  for (std::size_t i = segment + 1; i < domain.size; ++i)
+    first.spans[first.size++] = domain.spans[i];
   Domain& second = split.parts[1].domain;
   second.spans[0] = sides.second;
   second.spans[0].sense = domain.spans[0].sense;

@@ -25,8 +25,8 @@ enum class Sense : std::uint8_t { none = 0, forward = 1, backward = 2 };
 struct Span {
   Vertex tail = 0;
   Vertex head = 0;
-  Vertex behind = kNoVertex;   // the third vertex of the triangle on the other side
-  Sense sense = Sense::none;   // none: the segment is a single vertex
+  Vertex behind = kNoVertex;  // the third vertex of the triangle on the other side
+  Sense sense = Sense::none;  // none: the segment is a single vertex
   EdgeNumber edge = kNoEdge;
 };
 

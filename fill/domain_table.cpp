@@ -38,8 +38,8 @@ DomainTable::Key DomainTable::key_of(const Domain& domain) {
     key[i] = std::uint64_t{span.tail} | std::uint64_t{span.head} << kHeadBit |
              behind << kBehindBit | static_cast<std::uint64_t>(span.sense) << kSenseBit;
   }
-  key[0] |= std::uint64_t{domain.untouched} << kUntouchedBit |
-            std::uint64_t{domain.size} << kSizeBit;
+  key[0] |= std::uint64_t{domain.untouched} << kUntouchedBit | std::uint64_t{domain.size}
+                                                                   << kSizeBit;
   return key;
 }
 
@@ -128,7 +128,8 @@ Weight DomainTable::at_turn(const Kept& kept, Turn turn) const {
 }
 
 // A triangle is not needed where another one, with the angle between the two added, weighs no more.
-// The lightest of all stays; from there on in both senses each is compared with the last that stays.
+// The lightest of all stays; from there on in both senses each is compared with the last that
+// stays.
 void DomainTable::keep_best_by_turn(std::vector<Kept>& list) const {
   std::ranges::sort(list, [](const Kept& a, const Kept& b) {
     if (a.turn != b.turn) return a.turn < b.turn;
@@ -167,8 +168,7 @@ const DomainTable::Kept& DomainTable::nearest(std::span<const Kept> kept, Turn t
 }
 
 std::span<const EdgeNumber> DomainTable::weak_edges(Number number) const {
-  const std::size_t end =
-      number + 1 < domains_.size() ? domains_[number + 1].weak : weak_.size();
+  const std::size_t end = number + 1 < domains_.size() ? domains_[number + 1].weak : weak_.size();
   return std::span(weak_).subspan(domains_[number].weak, end - domains_[number].weak);
 }
 
@@ -178,16 +178,17 @@ void DomainTable::answer(Number number, std::optional<Turn> behind,
   const std::size_t begin_of_answers = answers.size();
   for (std::size_t set = domains_[number].set; set < end; ++set) {
     const std::span<const Kept> list = kept(set);
-    const Kept& best = behind ? nearest(list, *behind)
-                              : *std::ranges::min_element(list, {}, &Kept::weight);
-    const Answer answer{sets_[set].weak, behind ? at_turn(best, *behind) : best.weight,
-                        best.weight, best.third};
+    const Kept& best =
+        behind ? nearest(list, *behind) : *std::ranges::min_element(list, {}, &Kept::weight);
+    const Answer answer{sets_[set].weak, behind ? at_turn(best, *behind) : best.weight, best.weight,
+                        best.third};
     const auto is_better = [&](const Answer& other) {
       return (other.weak & ~answer.weak) == 0 && other.weight <= answer.weight;
     };
     const bool is_needed =
-        keeps_all_sets_ || std::none_of(answers.begin() + static_cast<std::ptrdiff_t>(begin_of_answers),
-                                        answers.end(), is_better);
+        keeps_all_sets_ ||
+        std::none_of(answers.begin() + static_cast<std::ptrdiff_t>(begin_of_answers), answers.end(),
+                     is_better);
     if (is_needed) answers.push_back(answer);
   }
 }

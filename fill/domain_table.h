@@ -19,7 +19,9 @@ struct Weight {
   std::uint64_t sum = 0;
   std::uint64_t tie = 0;
   friend auto operator<=>(const Weight&, const Weight&) = default;
-  friend Weight operator+(const Weight& a, const Weight& b) { return {a.sum + b.sum, a.tie + b.tie}; }
+  friend Weight operator+(const Weight& a, const Weight& b) {
+    return {a.sum + b.sum, a.tie + b.tie};
+  }
 };
 
 /// The least weight of a triangulation of a domain with a given triangle on its access edge and

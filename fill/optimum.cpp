@@ -5,8 +5,8 @@
 
 namespace watertight::fill {
 
-Optimum::Optimum(const Borders& borders, const Candidates& candidates,
-                 const SplitOptions& options, bool keeps_all_sets)
+Optimum::Optimum(const Borders& borders, const Candidates& candidates, const SplitOptions& options,
+                 bool keeps_all_sets)
     : borders_(borders),
       candidates_(candidates),
       has_angles_(options.has_angles),
@@ -17,7 +17,8 @@ Optimum::Optimum(const Borders& borders, const Candidates& candidates,
 /// loop the shell's facet.
 std::optional<Turn> Optimum::turn_behind(const Span& span) const {
   if (!has_angles_) return std::nullopt;
-  if (span.behind != kNoVertex) return candidates_.turn(span.edge, span.tail, span.head, span.behind);
+  if (span.behind != kNoVertex)
+    return candidates_.turn(span.edge, span.tail, span.head, span.behind);
   const Vertex start = borders_.next[span.tail] == span.head ? span.tail : span.head;
   const geometry::Vector3& direction = borders_.behind[start];
   if (direction == geometry::Vector3{}) return std::nullopt;
@@ -30,8 +31,7 @@ Weight Optimum::angle(const std::optional<Turn>& first, const std::optional<Turn
 }
 
 Weight Optimum::own_weight(const Domain& domain, Vertex third) const {
-  const std::uint64_t area =
-      candidates_.area(domain.spans[0].tail, domain.spans[0].head, third);
+  const std::uint64_t area = candidates_.area(domain.spans[0].tail, domain.spans[0].head, third);
   return has_angles_ ? Weight{0, area} : Weight{area, 0};
 }
 
@@ -55,14 +55,15 @@ void Optimum::answer(const Part& part, std::vector<Answer>& answers) const {
 /// Calls visit(weak edges, weight, first answer, second answer or null) for each pair of answers of
 /// the parts that can be joined. Requires parts that were looked up.
 template <class Visit>
-void Optimum::join_parts(const Domain& domain, std::span<const EdgeNumber> weak,
-                         const Split& split, Visit visit) {
+void Optimum::join_parts(const Domain& domain, std::span<const EdgeNumber> weak, const Split& split,
+                         Visit visit) {
   std::array<PartEdges, 2> edges;
   for (std::size_t i = 0; i < split.count; ++i) {
     answer(split.parts[i], answers_[i]);
     if (answers_[i].empty()) return;
     edges[i].domain = &split.parts[i].domain;
-    if (split.parts[i].kind == DomainKind::open) edges[i].weak = table_.weak_edges(split.parts[i].number);
+    if (split.parts[i].kind == DomainKind::open)
+      edges[i].weak = table_.weak_edges(split.parts[i].number);
   }
   const Joiner joiner(domain.spans[0].edge, weak, edges[0], edges[1]);
   if (!joiner.can_join()) return;

@@ -34,8 +34,7 @@ class Optimum {
   /// The triangles of the best triangulation of a domain of one spanning edge, which is an edge of
   /// a loop. Each has the sense of the boundary. Errors: not_found where there is none;
   /// limit_exceeded beyond the budget; cancelled.
-  Result<std::vector<std::array<Vertex, 3>>> triangulate(const Domain& start,
-                                                         const Budget& budget);
+  Result<std::vector<std::array<Vertex, 3>>> triangulate(const Domain& start, const Budget& budget);
 
   const DomainTable& table() const { return table_; }
 
@@ -68,7 +67,7 @@ class Optimum {
   std::size_t frame_count_ = 0;
   std::vector<Split> splits_;
   std::array<std::vector<Answer>, 2> answers_;  // of the parts of a split
-  Domain unknown_;  // the part that has to be weighed first
+  Domain unknown_;                              // the part that has to be weighed first
 };
 
 }  // namespace watertight::fill

@@ -23,10 +23,10 @@ Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::m
 
 /// The points of the loops, sorted; a vertex is a place in this list.
 struct Sorted {
-  std::vector<Index> points;             // vertex -> point
-  std::vector<Point> places;             // vertex -> coordinates
+  std::vector<Index> points;               // vertex -> point
+  std::vector<Point> places;               // vertex -> coordinates
   std::vector<std::vector<Vertex>> loops;  // each from its smallest vertex on, sorted
-  std::vector<std::size_t> loop_of;      // sorted loop -> loop
+  std::vector<std::size_t> loop_of;        // sorted loop -> loop
 };
 
 Status check(std::span<const Point> points, std::span<const Loop> loops,
@@ -93,8 +93,8 @@ Result<Sorted> sorted(std::span<const Point> points, std::span<const Loop> loops
   return result;
 }
 
-Borders borders_of(const Sorted& sorted, std::span<const Point> points,
-                   std::span<const Loop> loops, const FillOptions& options) {
+Borders borders_of(const Sorted& sorted, std::span<const Point> points, std::span<const Loop> loops,
+                   const FillOptions& options) {
   Borders borders;
   const std::size_t n = sorted.places.size();
   for (const Point& place : sorted.places) {

@@ -52,8 +52,8 @@ Joiner::Joiner(EdgeNumber access, std::span<const EdgeNumber> weak, const PartEd
   for (const EdgeNumber edge : second.weak) {
     const auto found = std::ranges::lower_bound(first.weak, edge);
     const bool is_shared = found != first.weak.end() && *found == edge;
-    second_in_first_.push_back(
-        is_shared ? static_cast<std::uint8_t>(found - first.weak.begin()) : kNowhere);
+    second_in_first_.push_back(is_shared ? static_cast<std::uint8_t>(found - first.weak.begin())
+                                         : kNowhere);
   }
   for (std::size_t i = 0; i < weak.size(); ++i) {
     if (spans(first.domain, weak[i]) || spans(second.domain, weak[i])) always_ |= WeakSet{1} << i;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
+#include <array>
 #include <utility>
 
+#include "fill/triangulate_loops.h"
 #include "geometry/fitted_plane.h"
-#include "geometry/vector3.h"
 #include "repair/border_loops.h"
+#include "repair/hole_groups.h"
 #include "repair/remedies.h"
-#include "repair/turn.h"
+#include "repair/shell_surface.h"
 #include "tessellate/facets.h"
 
 namespace watertight::repair {
@@ -14,11 +15,8 @@ namespace {
 
 using tessellate::FacetState;
 
-// With more loops in a shell islands are not looked for: each pair of loops is triangulated.
-constexpr std::size_t kMostLoops = 200;
-
 /// The canonical triangles of a facet with these rings; none if the rings bound no region.
-std::vector<Ring> triangles_of(const EditedSolid& solid, const EditedFacet& facet) {
+std::vector<Ring> triangles_in_plan(const EditedSolid& solid, const EditedFacet& facet) {
   std::vector<Ring> result;
   const Result<FacetAlone> own = alone(solid, facet);
   if (!own) return result;
@@ -31,49 +29,7 @@ std::vector<Ring> triangles_of(const EditedSolid& solid, const EditedFacet& face
   return result;
 }
 
-/// Twice the area of a loop, as it is seen from where it is largest; in square metres.
-double size_of(const EditedSolid& solid, const Ring& loop, const std::array<double, 3>& units) {
-  using namespace geometry;
-  Vector3 area{};
-  const Vector3 first = metres_of(solid, loop[0], units);
-  for (std::size_t i = 2; i < loop.size(); ++i) {
-    const Vector3 part = cross(metres_of(solid, loop[i - 1], units) - first,
-                               metres_of(solid, loop[i], units) - first);
-    for (std::size_t axis = 0; axis < 3; ++axis) area[axis] += part[axis];
-  }
-  return length(area);
-}
-
-/// Whether a loop is an island in another one: it lies inside and runs the other way.
-bool is_island(const EditedSolid& solid, const Ring& outer, const Ring& loop) {
-  const EditedFacet facet{{outer, loop}, kNone};
-  const int turn = turn_of(solid, facet, outer);
-  return turn != 0 && turn_of(solid, facet, loop) == -turn && !triangles_of(solid, facet).empty();
-}
-
-/// The loops in groups, each an outer loop and its islands. Large loops choose first.
-std::vector<std::vector<Ring>> groups_of(const EditedSolid& solid, std::vector<Ring> loops) {
-  const auto units = metres_per_unit(solid);
-  std::vector<std::pair<double, Ring>> by_size;
-  for (Ring& loop : loops) by_size.emplace_back(-size_of(solid, loop, units), std::move(loop));
-  std::sort(by_size.begin(), by_size.end());
-  std::vector<std::vector<Ring>> groups;
-  std::vector<bool> is_taken(by_size.size());
-  for (std::size_t i = 0; i < by_size.size(); ++i) {
-    if (is_taken[i]) continue;
-    std::vector<Ring>& group = groups.emplace_back();
-    group.push_back(by_size[i].second);
-    for (std::size_t j = i + 1; j < by_size.size() && by_size.size() <= kMostLoops; ++j) {
-      if (is_taken[j] || !is_island(solid, by_size[i].second, by_size[j].second)) continue;
-      group.push_back(by_size[j].second);
-      is_taken[j] = true;
-    }
-  }
-  return groups;
-}
-
-bool is_planar(const EditedSolid& solid, const std::vector<Ring>& group,
-               const Tolerances& tolerances) {
+bool is_planar(const EditedSolid& solid, const HoleLoops& group, const Tolerances& tolerances) {
   const auto units = metres_per_unit(solid);
   std::vector<std::array<double, 3>> places;
   for (const Ring& loop : group) {
@@ -83,48 +39,117 @@ bool is_planar(const EditedSolid& solid, const std::vector<Ring>& group,
   return geometry::distance_to_fitted_plane(places, limit).distance <= limit;
 }
 
-/// Adds the facets that close a hole.
-HoleFill fill_hole(const EditedSolid& solid, std::vector<Ring> group, const Tolerances& tolerances,
-                   std::vector<EditedFacet>& facets) {
-  HoleFill fill;
-  fill.loops = group.size();
-  for (const Ring& loop : group) fill.vertices += loop.size();
-  EditedFacet facet{std::move(group), kNone};
-  std::vector<Ring> triangles = triangles_of(solid, facet);
-  if (triangles.empty()) {
-    fill.method = "unfilled";
-    fill.reason = "the loops cross in projection";
-    return fill;
+/// The most vertices of 1, 2 and 3 loops for which the optimum is looked for among all triangles.
+constexpr std::array<std::size_t, 3> kMostVerticesForAll{128, 24, 24};
+
+/// The most work for the optimum of a hole: some seconds.
+constexpr std::size_t kMostDomains = 2'000'000;
+constexpr std::size_t kMostBytes = std::size_t{200} << 20U;
+
+bool is_small(const HoleFill& fill) {
+  return fill.loops <= kMostVerticesForAll.size() &&
+         fill.vertices <= kMostVerticesForAll[fill.loops - 1];
+}
+
+fill::FillOptions optimum_options(const EditedSolid& solid, const ShellSurface& surface,
+                                  const HoleLoops& loops) {
+  fill::FillOptions options;
+  const auto units = metres_per_unit(solid);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    options.metres_per_unit[at] = units[at] * solid.lattice.scale(axis);
   }
-  if (is_planar(solid, facet.rings, tolerances)) {
+  for (const Ring& loop : loops) {
+    auto& behind = options.behind.emplace_back();
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      behind.push_back(surface.behind(loop[i], loop[(i + 1) % loop.size()]));
+    }
+  }
+  options.max_domains = kMostDomains;
+  options.max_bytes = kMostBytes;
+  options.is_allowed = [&](const Triangle& triangle) { return surface.has_room_for(triangle); };
+  return options;
+}
+
+/// The best triangles: among Delaunay triangles, else among all for a small hole. Says which in
+/// `fill`.
+Result<std::vector<Triangle>> best_triangles(const EditedSolid& solid, const ShellSurface& surface,
+                                             const HoleLoops& loops, HoleFill& fill) {
+  fill::FillOptions options = optimum_options(solid, surface, loops);
+  auto best = fill::triangulate_loops(solid.vertices, loops, options);
+  fill.method = "delaunay";
+  if (!best && is_small(fill)) {
+    options.space = fill::CandidateSpace::all;
+    best = fill::triangulate_loops(solid.vertices, loops, options);
+    fill.method = "all";
+  }
+  if (!best) return std::move(best).error();
+  fill.angle = best->angle;
+  fill.area = best->area;
+  return std::move(best->triangles);
+}
+
+/// Adds the facets that close a hole.
+HoleFill fill_hole(const EditedSolid& solid, const ShellSurface& surface, HoleLoops loops,
+                   const FillHolesOptions& options, std::vector<EditedFacet>& facets) {
+  HoleFill fill;
+  fill.loops = loops.size();
+  for (const Ring& loop : loops) fill.vertices += loop.size();
+  EditedFacet facet{std::move(loops), kNone};
+  std::vector<Ring> in_plan = triangles_in_plan(solid, facet);
+  if (!in_plan.empty() && is_planar(solid, facet.rings, options.tolerances)) {
     fill.method = "facet";
     fill.facets = 1;
     facets.push_back(std::move(facet));
     return fill;
   }
+  if (!options.prefers_plan || in_plan.empty()) {
+    const bool is_bounded = fill.loops <= options.most_islands + 1;
+    const auto best = is_bounded
+                          ? best_triangles(solid, surface, facet.rings, fill)
+                          : Error{ErrorCode::limit_exceeded, "the hole has too many islands"};
+    if (best) {
+      fill.facets = best->size();
+      for (const Triangle& triangle : *best) {
+        facets.push_back({{Ring(triangle.begin(), triangle.end())}, kNone});
+      }
+      return fill;
+    }
+    fill.reason = best.error().message;
+  }
+  if (in_plan.empty()) {
+    fill.method = "unfilled";
+    return fill;
+  }
   fill.method = "plan";
-  fill.facets = triangles.size();
-  for (Ring& triangle : triangles) facets.push_back({{std::move(triangle)}, kNone});
+  fill.reason.clear();
+  fill.facets = in_plan.size();
+  for (Ring& triangle : in_plan) facets.push_back({{std::move(triangle)}, kNone});
   return fill;
 }
 
 }  // namespace
 
-std::vector<HoleFill> fill_holes(EditedSolid& solid, const Tolerances& tolerances) {
+std::vector<HoleFill> fill_holes(EditedSolid& solid, const FillHolesOptions& options) {
   std::vector<HoleFill> fills;
+  const ShellSurface surface(solid);
+  std::vector<std::vector<EditedFacet>> added(solid.shells.size());
   for (std::size_t shell = 0; shell < solid.shells.size(); ++shell) {
     BorderLoops borders = border_loops(solid.shells[shell]);
-    std::vector<EditedFacet> added;
-    for (std::vector<Ring>& group : groups_of(solid, std::move(borders.loops))) {
-      HoleFill fill = fill_hole(solid, std::move(group), tolerances, added);
+    for (HoleLoops& loops : group_loops(solid, std::move(borders.loops))) {
+      HoleFill fill = fill_hole(solid, surface, std::move(loops), options, added[shell]);
       fill.shell = static_cast<Index>(shell);
       fills.push_back(std::move(fill));
     }
-    if (borders.left_over > 0) {
-      fills.push_back({static_cast<Index>(shell), 0, borders.left_over, 0, "unfilled",
-                       "more than two facets meet along the border"});
-    }
-    for (EditedFacet& facet : added) solid.shells[shell].push_back(std::move(facet));
+    if (borders.left_over == 0) continue;
+    HoleFill& fill = fills.emplace_back();
+    fill.shell = static_cast<Index>(shell);
+    fill.vertices = borders.left_over;
+    fill.method = "unfilled";
+    fill.reason = "more than two facets meet along the border";
+  }
+  for (std::size_t shell = 0; shell < added.size(); ++shell) {
+    for (EditedFacet& facet : added[shell]) solid.shells[shell].push_back(std::move(facet));
   }
   return fills;
 }

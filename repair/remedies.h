@@ -44,15 +44,26 @@ struct HoleFill {
   std::size_t loops = 0;
   std::size_t vertices = 0;
   std::size_t facets = 0;  // new ones
-  std::string method;      // "facet": one planar facet with rings; "plan": canonical triangles;
-                           // "unfilled"
+  std::string method;      // "facet", "delaunay", "all", "plan" or "unfilled"; see fill_holes()
   std::string reason;      // why it is unfilled
+  double angle = 0;        // "delaunay", "all": the sum of angles between triangles, in radians
+  double area = 0;         // "delaunay", "all": square metres
+};
+
+struct FillHolesOptions {
+  Tolerances tolerances;
+  std::size_t most_islands = 4;  // holes with more are not filled by an optimum
+  bool prefers_plan = false;     // method "plan" before the optimum
 };
 
 /// Closes the borders of shells. Loops that lie inside another one and run the other way are its
-/// islands. A hole whose loops are within the tolerances of one plane becomes a facet with rings;
-/// one whose loops do not cross in projection becomes the canonical triangles of such a facet.
-/// Cost: O(n log n), and a triangulation for each pair of loops.
-std::vector<HoleFill> fill_holes(EditedSolid& solid, const Tolerances& tolerances);
+/// islands. The first of these methods that succeeds is taken:
+///   facet     all loops are within the tolerances of one plane: one facet with rings
+///   delaunay  the triangles with the least sum of angles, to each other and to the facets around
+///             the hole, among the Delaunay triangles of its vertices that meet no other facet
+///   all       the same among all triangles, for small holes
+///   plan      the canonical triangles of a facet with these rings
+/// Cost: O(n log n) and that of fill/triangulate_loops.h for each hole.
+std::vector<HoleFill> fill_holes(EditedSolid& solid, const FillHolesOptions& options);
 
 }  // namespace watertight::repair

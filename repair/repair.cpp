@@ -19,14 +19,15 @@ struct Attempt {
   double weld_metres = 0;
   bool has_facets = false;
   bool has_fill = false;
+  bool prefers_plan = false;  // holes are filled in plan rather than by the least angles
 };
 
 bool has(const RepairOptions& options, Remedy remedy) {
   return std::ranges::find(options.remedies, remedy) != options.remedies.end();
 }
 
-/// The sets in the order in which they are tried: what guesses nothing, then triangles for bent
-/// facets, then filled holes, each without welding before any with it.
+/// The sets in the order in which they are tried: what guesses nothing, then welding and triangles
+/// for bent facets, then all that again with filled holes.
 std::vector<Attempt> attempts_of(const RepairOptions& options) {
   std::vector<double> welds{0};
   if (has(options, Remedy::weld) && options.weld_metres > 0) {
@@ -39,18 +40,17 @@ std::vector<Attempt> attempts_of(const RepairOptions& options) {
   attempts.push_back({});
   if (has_orientation) attempts.push_back({true});
   if (has_junctions) attempts.push_back({has_orientation, true});
-  for (const double weld : welds) {
-    const Attempt base{has_orientation, has_junctions, weld};
-    for (const auto& [facets, fill] :
-         {std::pair(false, false), {true, false}, {false, true}, {true, true}}) {
-      if ((facets && !has(options, Remedy::facets)) || (fill && !has(options, Remedy::fill)) ||
-          (!facets && !fill && weld == 0)) {
-        continue;
+  for (const bool fill : {false, true}) {
+    if (fill && !has(options, Remedy::fill)) break;
+    for (const double weld : welds) {
+      for (const bool facets : {false, true}) {
+        if (facets && !has(options, Remedy::facets)) break;
+        if (!fill && !facets && weld == 0) continue;
+        Attempt attempt{has_orientation, has_junctions, weld, facets, fill, false};
+        attempts.push_back(attempt);
+        attempt.prefers_plan = true;
+        if (fill) attempts.push_back(attempt);
       }
-      Attempt attempt = base;
-      attempt.has_facets = facets;
-      attempt.has_fill = fill;
-      attempts.push_back(attempt);
     }
   }
   return attempts;
@@ -86,7 +86,8 @@ class Trial {
     if (attempt.has_junctions) note(Remedy::junctions, insert_junctions(work));
     std::vector<HoleFill> holes;
     if (attempt.has_fill) {
-      holes = fill_holes(work, options_.certify.tolerances);
+      holes = fill_holes(
+          work, {options_.certify.tolerances, options_.most_islands, attempt.prefers_plan});
       note(Remedy::fill, static_cast<std::size_t>(std::ranges::count_if(
                              holes, [](const HoleFill& hole) { return hole.facets > 0; })));
     }

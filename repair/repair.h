@@ -19,7 +19,8 @@ std::string_view to_string(Remedy remedy);
 
 struct RepairOptions {
   std::vector<Remedy> remedies{Remedy::rings, Remedy::orientation, Remedy::junctions};
-  double weld_metres = 0;  // the largest move of a vertex by Remedy::weld; 0: none
+  double weld_metres = 0;        // the largest move of a vertex by Remedy::weld; 0: none
+  std::size_t most_islands = 4;  // the most islands of a hole that is filled by an optimum
   CertifyOptions certify;
 };
 

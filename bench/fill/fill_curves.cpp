@@ -2,7 +2,8 @@
 //
 // Times the filling of curves of the paper: a monkey saddle, and saddles at the corners of an
 // octahedron (bench/fill/saddles.txt). Usage: fill_curves monkey N delaunay|all angle|area
-//                                             fill_curves saddles FILE delaunay|all angle|area [both]
+//                                             fill_curves saddles FILE delaunay|all angle|area
+//                                             [both]
 #include <sys/resource.h>
 
 #include <chrono>
@@ -59,11 +60,12 @@ Curves read_curves(const char* path) {
 int main(int argc, char** argv) {
   if (argc < 5) return 2;
   const std::string kind = argv[1];
-  const Curves curves = kind == "monkey" ? monkey_saddle(std::stoul(argv[2])) : read_curves(argv[2]);
+  const Curves curves =
+      kind == "monkey" ? monkey_saddle(std::stoul(argv[2])) : read_curves(argv[2]);
   fill::FillOptions options;
   options.max_bytes = std::size_t{4} << 30U;
-  options.space = std::string(argv[3]) == "all" ? fill::CandidateSpace::all
-                                                : fill::CandidateSpace::delaunay;
+  options.space =
+      std::string(argv[3]) == "all" ? fill::CandidateSpace::all : fill::CandidateSpace::delaunay;
   if (std::string(argv[4]) == "area") options.objective = fill::Objective::area;
   for (int i = 5; i < argc; ++i) {
     if (std::string(argv[i]) == "both") options.has_both_senses = true;
@@ -78,11 +80,11 @@ int main(int argc, char** argv) {
   }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  std::printf("%s %s %s: %zu triangles of %zu, angle %.7f, area %.7f, %zu domains, %zu sets, "
-              "%.1f MB in tables, %.1f MB in all, %.3f s\n",
-              argv[2], argv[3], argv[4], filled->triangles.size(), filled->candidates,
-              filled->angle, filled->area, filled->domains, filled->weak_sets,
-              static_cast<double>(filled->bytes) / 1e6,
-              static_cast<double>(usage.ru_maxrss) / 1e3, seconds.count());
+  std::printf(
+      "%s %s %s: %zu triangles of %zu, angle %.7f, area %.7f, %zu domains, %zu sets, "
+      "%.1f MB in tables, %.1f MB in all, %.3f s\n",
+      argv[2], argv[3], argv[4], filled->triangles.size(), filled->candidates, filled->angle,
+      filled->area, filled->domains, filled->weak_sets, static_cast<double>(filled->bytes) / 1e6,
+      static_cast<double>(usage.ru_maxrss) / 1e3, seconds.count());
   return 0;
 }

@@ -10,6 +10,8 @@ namespace watertight::builds {
 
 void print_blob_hashes();
 bool print_meshes();
+/// Prints checksums of the fillings of random holes.
+bool print_fillings();
 /// Prints the verdict and the hashes of report and blob of every solid of the documents.
 bool print_documents(std::span<char* const> files);
 /// Starts a server and lets clients come and go. Prints nothing.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A static tree of boxes that finds the boxes near a point, a box or a ray. A search leaves out
-// only boxes that the caller's test rules out, so it can be exact. Internal to validate/.
+// only boxes that the caller's test rules out, so it can be exact. For validate/ and repair/.
 #pragma once
 
 #include <span>

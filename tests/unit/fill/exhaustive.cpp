@@ -105,8 +105,7 @@ class Search {
     }
     const auto other = thirds_.find(turned(edge));
     if (other == thirds_.end()) return 0;
-    return angle_at(edge, own,
-                    geometry::difference(points_[other->second], points_[edge.first]));
+    return angle_at(edge, own, geometry::difference(points_[other->second], points_[edge.first]));
   }
 
   void continue_from(double weight) {

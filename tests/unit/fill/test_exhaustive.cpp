@@ -24,8 +24,8 @@ RandomLoops random_input(std::mt19937& numbers, const std::vector<std::size_t>& 
     Loop& loop = input.loops.emplace_back();
     for (std::size_t i = 0; i < size; ++i) {
       loop.push_back(static_cast<Index>(input.points.size()));
-      input.points.push_back({centre.x + place(numbers), centre.y + place(numbers),
-                              centre.z + place(numbers)});
+      input.points.push_back(
+          {centre.x + place(numbers), centre.y + place(numbers), centre.z + place(numbers)});
     }
   }
   return input;
@@ -99,8 +99,8 @@ TEST_CASE("triangles that are not allowed are left out as by trying all surfaces
   std::mt19937 numbers(9);
   for (int round = 0; round < 40; ++round) {
     CAPTURE(round);
-    const RandomLoops input = random_input(numbers, round % 2 == 0 ? std::vector<std::size_t>{6}
-                                                             : std::vector<std::size_t>{3, 3});
+    const RandomLoops input = random_input(
+        numbers, round % 2 == 0 ? std::vector<std::size_t>{6} : std::vector<std::size_t>{3, 3});
     const auto seed = static_cast<unsigned>(numbers());
     FillOptions options;
     options.is_allowed = [seed](const Triangle& t) {

@@ -33,7 +33,8 @@ Curves monkey_saddle(std::size_t n) {
 /// Squares around the z axis, at different heights; the second one runs against the first.
 Curves two_squares(double inner) {
   const auto square = [](double half, double z) {
-    return std::vector<Point>{{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
+    return std::vector<Point>{
+        {-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
   };
   Curves input;
   input.points = square(2, 0);

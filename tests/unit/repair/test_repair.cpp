@@ -183,7 +183,7 @@ TEST_CASE("a hole in a facet that bends is filled by triangles") {
       repair(solids::solid_of(shape, solids::millimetres()), nullptr, everything());
   REQUIRE(result.outcome == Outcome::repaired);
   REQUIRE(result.holes.size() == 1);
-  CHECK(result.holes[0].method == "plan");
+  CHECK(result.holes[0].method == "delaunay");
   CHECK(result.holes[0].facets == 2);
 }
 
@@ -199,6 +199,34 @@ TEST_CASE("a court without a floor gets one facet with a ring") {
   CHECK(result.holes[0].loops == 2);
   CHECK(result.holes[0].method == "facet");
   CHECK(hash_of(result.after->certified->solid.solid()) == wanted);
+}
+
+TEST_CASE("a court on sloping ground is filled together with its border") {
+  Shape shape{
+      solids::tunnelled_box({0, 0, 0}, {8000, 8000, 8000}, {2000, 2000, 0}, {4000, 4000, 8000})};
+  shape[0].erase(shape[0].begin());
+  // The ground falls off on one side, so that no plane holds all corners below.
+  for (solids::Facet& facet : shape[0]) {
+    for (auto& ring : facet) {
+      for (Point& corner : ring) {
+        if (corner.z == 0 && corner.x == 8000) corner.z = corner.y == 0 ? -900 : -300;
+      }
+    }
+  }
+  const Repaired result =
+      repair(solids::solid_of(shape, solids::millimetres()), nullptr, everything());
+  REQUIRE(result.outcome == Outcome::repaired);
+  REQUIRE(result.holes.size() == 1);
+  CHECK(result.holes[0].loops == 2);
+  CHECK(result.holes[0].method == "delaunay");
+  CHECK(result.holes[0].facets == 8);
+  CHECK(result.holes[0].angle > 0);
+  // Without islands there is no optimum; the canonical triangles of the ring do.
+  RepairOptions options = everything();
+  options.most_islands = 0;
+  const Repaired in_plan = repair(solids::solid_of(shape, solids::millimetres()), nullptr, options);
+  REQUIRE(in_plan.outcome == Outcome::repaired);
+  CHECK(in_plan.holes[0].method == "plan");
 }
 
 TEST_CASE("a remedy that was not asked for is not applied") {

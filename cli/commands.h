@@ -119,6 +119,7 @@ struct RepairCommand {
   std::string output;
   std::vector<std::string> remedies{"rings", "orientation", "junctions"};  // or "all"
   double weld_metres = 0;
+  std::size_t most_islands = 4;
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
   bool is_quiet = false;

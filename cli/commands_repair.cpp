@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The command repair: documents whose invalid solids are made valid where a remedy does it.
-#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <map>
 #include <set>
@@ -23,8 +23,36 @@ using pipeline::DocumentRepair;
 using pipeline::SolidRepair;
 using repair::Remedy;
 
-constexpr Remedy kRemedies[] = {Remedy::rings, Remedy::orientation, Remedy::junctions,
-                                Remedy::weld,  Remedy::facets,      Remedy::fill};
+std::string fixed_text(double value, int decimals) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
+/// The facets that came, went and were turned, and the vertices that moved: "1 facet of 80.000 m2
+/// added, 2 removed". Empty without any.
+std::string changes_of(const SolidRepair& repair) {
+  const repair::Changes& changes = repair.changes;
+  std::vector<std::string> parts;
+  if (changes.facets_added > 0) {
+    std::string text = quantity(changes.facets_added, "facet");
+    if (changes.area_added > 0) text += " of " + fixed_text(changes.area_added, 3) + " m2";
+    parts.push_back(text + " added");
+  }
+  if (changes.facets_removed > 0) {
+    parts.push_back(quantity(changes.facets_removed, "facet") + " removed");
+  }
+  if (changes.facets_turned > 0) {
+    parts.push_back(quantity(changes.facets_turned, "facet") + " turned");
+  }
+  if (repair.moves.vertices > 0) {
+    parts.push_back(quantity(repair.moves.vertices, "vertex", "vertices") + " moved by at most " +
+                    fixed_text(repair.moves.largest_metres, 4) + " m");
+  }
+  std::string text;
+  for (const std::string& part : parts) text.append(text.empty() ? "" : ", ").append(part);
+  return text;
+}
 
 /// What was done to a solid, or what is wrong with it.
 std::string account_of(const SolidRepair& repair) {
@@ -40,10 +68,8 @@ std::string account_of(const SolidRepair& repair) {
   }
   for (const Remedy remedy : repair.remedies) add(std::string(to_string(remedy)), ", ");
   text = "repaired: " + text;
-  if (repair.facets_added + repair.facets_removed == 0) return text;
-  text += " (" + quantity(repair.facets_added, "facet") + " added, " +
-          std::to_string(repair.facets_removed) + " removed)";
-  return text;
+  const std::string changes = changes_of(repair);
+  return changes.empty() ? text : text + " (" + changes + ')';
 }
 
 void print(const SolidRepair& repair) {
@@ -66,9 +92,11 @@ void print_table(const DocumentRepair& outcome) {
   std::uint64_t undecided = 0;
   std::uint64_t added = 0;
   std::uint64_t removed = 0;
+  std::uint64_t moved = 0;
   for (const SolidRepair& repair : outcome.repairs) {
-    added += repair.facets_added;
-    removed += repair.facets_removed;
+    added += repair.changes.facets_added;
+    removed += repair.changes.facets_removed;
+    moved += repair.moves.vertices;
     repaired += repair.is_repaired ? 1 : 0;
     undecided += !repair.is_repaired && repair.is_undecided ? 1 : 0;
     for (const Remedy remedy : repair.remedies) ++by_remedy[remedy];
@@ -90,6 +118,7 @@ void print_table(const DocumentRepair& outcome) {
   print_row("undecided", undecided, 2);
   print_row("facets added", added);
   print_row("facets removed", removed);
+  print_row("vertices moved", moved);
 }
 
 Exit exit_of_repair(const DocumentRepair& outcome) {
@@ -137,15 +166,12 @@ Exit run(const RepairCommand& command) {
                  printable(note).c_str());
   }
   repair::RepairOptions options;
-  options.remedies.clear();
-  const auto is_asked_for = [&](const std::string& name) {
-    return std::ranges::find(command.remedies, name) != command.remedies.end();
-  };
-  for (const Remedy remedy : kRemedies) {
-    if (is_asked_for("all") || is_asked_for(std::string(to_string(remedy)))) {
-      options.remedies.push_back(remedy);
-    }
-  }
+  std::string list;
+  for (const std::string& name : command.remedies) list.append(list.empty() ? "" : ",").append(name);
+  const auto remedies = repair::remedies_of(list);
+  if (!remedies) return fail(command.input, remedies.error());
+  options.remedies = *remedies;
+  options.most_islands = command.most_islands;
   options.weld_metres = command.weld_metres;
   validate::GroupOptions groups;  // solids are repaired one by one
   apply(command.rules, options.certify, groups);

@@ -158,7 +158,8 @@ Result<std::vector<std::array<Vertex, 3>>> Optimum::triangulate(const Domain& st
   std::vector<std::array<Vertex, 3>> triangles;
   std::vector<std::pair<Domain, Answer>> open{{start, answers.front()}};
   while (!open.empty()) {
-    const auto [domain, wanted] = open.back();
+    const Domain domain = open.back().first;
+    const Answer wanted = open.back().second;
     open.pop_back();
     if (wanted.third == kNoVertex) continue;
     triangles.push_back({domain.spans[0].tail, domain.spans[0].head, wanted.third});

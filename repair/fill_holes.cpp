@@ -52,7 +52,7 @@ bool is_small(const HoleFill& fill) {
 }
 
 fill::FillOptions optimum_options(const EditedSolid& solid, const ShellSurface& surface,
-                                  const HoleLoops& loops) {
+                                  const HoleLoops& loops, const CancelPoll& poll) {
   fill::FillOptions options;
   const auto units = metres_per_unit(solid);
   for (int axis = 0; axis < 3; ++axis) {
@@ -65,6 +65,7 @@ fill::FillOptions optimum_options(const EditedSolid& solid, const ShellSurface& 
       behind.push_back(surface.behind(loop[i], loop[(i + 1) % loop.size()]));
     }
   }
+  options.is_cancelled = poll;
   options.max_domains = kMostDomains;
   options.max_bytes = kMostBytes;
   options.is_allowed = [&](const Triangle& triangle) { return surface.has_room_for(triangle); };
@@ -74,8 +75,9 @@ fill::FillOptions optimum_options(const EditedSolid& solid, const ShellSurface& 
 /// The best triangles: among Delaunay triangles, else among all for a small hole. Says which in
 /// `fill`.
 Result<std::vector<Triangle>> best_triangles(const EditedSolid& solid, const ShellSurface& surface,
-                                             const HoleLoops& loops, HoleFill& fill) {
-  fill::FillOptions options = optimum_options(solid, surface, loops);
+                                             const HoleLoops& loops, const CancelPoll& poll,
+                                             HoleFill& fill) {
+  fill::FillOptions options = optimum_options(solid, surface, loops, poll);
   auto best = fill::triangulate_loops(solid.vertices, loops, options);
   fill.method = "delaunay";
   if (!best && is_small(fill)) {
@@ -106,7 +108,7 @@ HoleFill fill_hole(const EditedSolid& solid, const ShellSurface& surface, HoleLo
   if (!options.prefers_plan || in_plan.empty()) {
     const bool is_bounded = fill.loops <= options.most_islands + 1;
     const auto best = is_bounded
-                          ? best_triangles(solid, surface, facet.rings, fill)
+                          ? best_triangles(solid, surface, facet.rings, options.is_cancelled, fill)
                           : Error{ErrorCode::limit_exceeded, "the hole has too many islands"};
     if (best) {
       fill.facets = best->size();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/cancel.h"
 #include "geometry/valid_solid.h"
 #include "repair/edited_solid.h"
 
@@ -29,10 +30,16 @@ std::size_t orient(EditedSolid& solid);
 /// edges. Exact. Cost: O(n log n + vertices close to each edge), bounded.
 std::size_t insert_junctions(EditedSolid& solid);
 
+/// Vertices that took the places of others.
+struct Moves {
+  std::size_t vertices = 0;
+  double largest_metres = 0;
+};
+
 /// Makes vertices at most `metres` apart one (validate/snap.h), and inserts vertices of open edges
 /// into open edges at most `metres` away. Answers with the number of vertices that moved or were
-/// inserted. Cost: O(n log n); quadratic in the open edges.
-std::size_t weld(EditedSolid& solid, double metres);
+/// inserted; sets `moves`. Cost: O(n log n); quadratic in the open edges.
+std::size_t weld(EditedSolid& solid, double metres, Moves& moves);
 
 /// Replaces facets by their canonical triangles (tessellate/facets.h). Numbers count through all
 /// shells. Facets without triangulation stay. Cost: that of the triangulation.
@@ -54,6 +61,7 @@ struct FillHolesOptions {
   Tolerances tolerances;
   std::size_t most_islands = 4;  // holes with more are not filled by an optimum
   bool prefers_plan = false;     // method "plan" before the optimum
+  CancelPoll is_cancelled;       // ends the search for an optimum
 };
 
 /// Closes the borders of shells. Loops that lie inside another one and run the other way are its

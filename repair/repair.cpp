@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <string>
 #include <utility>
 
 namespace watertight::repair {
@@ -75,6 +76,7 @@ class Trial {
   bool run(const Attempt& attempt, Repaired& repaired) {
     EditedSolid work = start_;
     std::vector<Remedy> changed;
+    Moves moves;
     const auto note = [&](Remedy remedy, std::size_t changes) {
       if (changes > 0 && std::ranges::find(changed, remedy) == changed.end()) {
         changed.push_back(remedy);
@@ -82,12 +84,12 @@ class Trial {
     };
     if (has(options_, Remedy::rings)) note(Remedy::rings, mend_rings(work));
     if (attempt.has_orientation) note(Remedy::orientation, orient(work));
-    if (attempt.weld_metres > 0) note(Remedy::weld, weld(work, attempt.weld_metres));
+    if (attempt.weld_metres > 0) note(Remedy::weld, weld(work, attempt.weld_metres, moves));
     if (attempt.has_junctions) note(Remedy::junctions, insert_junctions(work));
     std::vector<HoleFill> holes;
     if (attempt.has_fill) {
-      holes = fill_holes(
-          work, {options_.certify.tolerances, options_.most_islands, attempt.prefers_plan});
+      holes = fill_holes(work, {options_.certify.tolerances, options_.most_islands,
+                                attempt.prefers_plan, options_.certify.ladder.cancel});
       note(Remedy::fill, static_cast<std::size_t>(std::ranges::count_if(
                              holes, [](const HoleFill& hole) { return hole.facets > 0; })));
     }
@@ -106,6 +108,7 @@ class Trial {
     repaired.after = std::move(inspection);
     repaired.edits = std::move(work);
     repaired.remedies = std::move(changed);
+    repaired.moves = moves;
     repaired.holes = std::move(holes);
     return true;
   }
@@ -162,6 +165,32 @@ std::string_view to_string(Remedy remedy) {
       return "fill";
   }
   return "";
+}
+
+Result<std::vector<Remedy>> remedies_of(std::string_view list) {
+  std::vector<bool> is_named(kAllRemedies.size());
+  while (true) {
+    const std::size_t comma = list.find(',');
+    const std::string_view name = list.substr(0, comma);
+    bool is_known = name == "all";
+    for (std::size_t i = 0; i < kAllRemedies.size(); ++i) {
+      if (name != "all" && name != to_string(kAllRemedies[i])) continue;
+      is_known = is_named[i] = true;
+    }
+    if (!is_known) {
+      return Error{ErrorCode::invalid_argument,
+                   "there is no remedy '" + std::string(name) +
+                       "': the remedies are rings, orientation, junctions, weld, facets, fill, or "
+                       "all of them by 'all'"};
+    }
+    if (comma == std::string_view::npos) break;
+    list.remove_prefix(comma + 1);
+  }
+  std::vector<Remedy> remedies;
+  for (std::size_t i = 0; i < kAllRemedies.size(); ++i) {
+    if (is_named[i]) remedies.push_back(kAllRemedies[i]);
+  }
+  return remedies;
 }
 
 Result<OnSubmittedVertices> on_submitted_vertices(const Solid& submitted,

@@ -4,6 +4,7 @@
 // result that the validator accepts is taken, and nothing else is called repaired.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -15,7 +16,12 @@ namespace watertight::repair {
 
 /// The remedies in the order in which they are tried. The first three guess nothing.
 enum class Remedy : std::uint8_t { rings, orientation, junctions, weld, facets, fill };
+inline constexpr std::array kAllRemedies{Remedy::rings, Remedy::orientation, Remedy::junctions,
+                                         Remedy::weld,  Remedy::facets,      Remedy::fill};
 std::string_view to_string(Remedy remedy);
+/// The remedies of a list, parted by commas ("rings,fill"), or all ("all"), in their order. Errors:
+/// invalid_argument for an unknown or empty name.
+Result<std::vector<Remedy>> remedies_of(std::string_view list);
 
 struct RepairOptions {
   std::vector<Remedy> remedies{Remedy::rings, Remedy::orientation, Remedy::junctions};
@@ -31,6 +37,7 @@ struct Repaired {
   std::optional<Inspection> after;   // on the repaired solid; absent unless it was repaired
   std::optional<EditedSolid> edits;  // the facets of the repaired solid and where they came from
   std::vector<Remedy> remedies;      // those that changed something
+  Moves moves;                       // by Remedy::weld
   std::vector<HoleFill> holes;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -94,15 +95,32 @@ std::size_t insert_near(EditedSolid& solid, double metres) {
   return inserted;
 }
 
+/// The largest distance in metres between the vertices of a solid and the places they get.
+double largest_distance(const EditedSolid& solid, std::span<const Point> places) {
+  EditedSolid both{solid.vertices, {}, solid.lattice, solid.srid};
+  both.vertices.insert(both.vertices.end(), places.begin(), places.end());
+  const auto units = metres_per_unit(solid);
+  double largest = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto from = static_cast<Index>(i);
+    const auto to = static_cast<Index>(places.size() + i);
+    const Vector3 way = metres_of(both, to, units) - metres_of(both, from, units);
+    largest = std::max(largest, geometry::length(way));
+  }
+  return largest;
+}
+
 }  // namespace
 
-std::size_t weld(EditedSolid& solid, double metres) {
+std::size_t weld(EditedSolid& solid, double metres, Moves& moves) {
+  moves = {};
   const Result<Solid> before = solid_of(solid);
   if (!before) return 0;
   const auto snapped = validate::snap_vertices(*before, metres);
   if (!snapped) return 0;
   std::size_t changes = 0;
   if (snapped->moved > 0) {
+    const double largest_move = largest_distance(solid, snapped->solid.vertices());
     const geometry::MergedSolid merged = geometry::merge_equal_vertices(snapped->solid);
     for (auto& facets : solid.shells) {
       for (EditedFacet& facet : facets) {
@@ -113,6 +131,7 @@ std::size_t weld(EditedSolid& solid, double metres) {
     }
     solid.vertices.assign(merged.solid.vertices().begin(), merged.solid.vertices().end());
     changes += snapped->moved;
+    moves = {snapped->moved, largest_move};
     mend_rings(solid);
   }
   return changes + insert_near(solid, metres);

@@ -95,6 +95,19 @@ typedef struct wt_job {
 void wt_bridge_validate(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers EWKB with whether the solid is valid. */
 void wt_bridge_is_valid(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** The remedies for an invalid solid (repair/repair.h). */
+typedef struct wt_repair_choice {
+  const char* remedies; /* UTF-8: names parted by commas, or "all" */
+  double weld;          /* metres, from 0 to WATERTIGHT_MOST_WELD */
+} wt_repair_choice;
+#define WATERTIGHT_MOST_WELD 1000.0
+/** Answers EWKB with the EWKB of the solid as it is, if it is valid, or of the repaired one. A solid
+ *  that no remedy mends fails with 22023; its findings are the detail. */
+void wt_bridge_repair(const wt_job* job, const wt_repair_choice* choice,
+                      wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers EWKB with what a repair does, as JSON (repair/changes.h). */
+void wt_bridge_repair_report(const wt_job* job, const wt_repair_choice* choice,
+                             wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers EWKB with a blob, which states the rules. An invalid solid fails with 22023; its
  * findings are the detail. */
 void wt_bridge_encode(const wt_job* job, wt_reply* reply) WATERTIGHT_NOEXCEPT;

@@ -215,6 +215,16 @@ CREATE FUNCTION wt_faces(solid solid, OUT shell integer, OUT facet integer, OUT 
 COMMENT ON FUNCTION wt_faces(solid) IS
   'facets of a solid, counted from 0: area, normal, tilt (degrees: 0 a flat roof, 90 a wall), azimuth (clockwise from north, NULL without), centroid, planarity (largest distance of a corner from the fitted plane), rings';
 
+-- Repair.
+CREATE FUNCTION wt_repair(ewkb bytea, remedies text DEFAULT 'rings,orientation,junctions', weld float8 DEFAULT 0) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_repair' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 20000;
+COMMENT ON FUNCTION wt_repair(bytea, text, float8) IS
+  'the solid (EWKB), made valid by these remedies (rings, orientation, junctions, weld, facets, fill, or all) where it is not valid; vertices are welded at most so many metres away';
+CREATE FUNCTION wt_repair_report(ewkb bytea, remedies text DEFAULT 'rings,orientation,junctions', weld float8 DEFAULT 0) RETURNS jsonb
+  AS 'MODULE_PATHNAME', 'wt_repair_report' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 20000;
+COMMENT ON FUNCTION wt_repair_report(bytea, text, float8) IS
+  'what wt_repair does to a solid (EWKB): outcome, remedies, counts of changes, holes';
+
 -- Findings as rows. The bodies are parsed here, so that they work in any schema and under any search path.
 CREATE TYPE wt_finding AS (code integer, name text, severity text, shell integer, facet integer, other_facet integer,
   witness float8[], measured float8, "limit" float8, unit text, message text);

@@ -20,23 +20,6 @@ struct SolidPlace {
   std::size_t solid = 0;
 };
 
-/// Counts facets that came or went; one that was divided went, and its parts came.
-void count_facets(const Solid& before, const std::vector<Index>& source, SolidRepair& repair) {
-  std::vector<std::size_t> parts(before.facet_count());
-  for (const Index facet : source) {
-    if (facet == kNone) {
-      ++repair.facets_added;
-    } else {
-      ++parts[facet];
-    }
-  }
-  for (const std::size_t count : parts) {
-    if (count == 1) continue;
-    ++repair.facets_removed;
-    repair.facets_added += count;
-  }
-}
-
 SolidRepair described(const Feature& feature, const SubmittedSolid& submitted,
                       const Repaired& repaired) {
   SolidRepair repair;
@@ -46,6 +29,8 @@ SolidRepair described(const Feature& feature, const SubmittedSolid& submitted,
   repair.is_undecided = repaired.before.verdict == Verdict::undecided;
   repair.codes = validate::error_codes(repaired.before.findings);
   repair.remedies = repaired.remedies;
+  repair.changes = repair::changes_of(submitted.solid, repaired);
+  repair.moves = repaired.moves;
   repair.holes = repaired.holes;
   return repair;
 }
@@ -84,7 +69,6 @@ Result<DocumentRepair> repair_document(Document& document, delaunay::EngineWorke
     if (repair.is_repaired) {
       auto solid = repair::on_submitted_vertices(submitted.solid, *results[i]->edits);
       if (!solid) return std::move(solid).error();
-      count_facets(submitted.solid, solid->facet_source, repair);
       edits[places[i].feature].push_back(
           {places[i].solid, std::move(solid->solid), std::move(solid->facet_source)});
     }

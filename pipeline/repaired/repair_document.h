@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/document.h"
-#include "repair/repair.h"
+#include "repair/changes.h"
 
 namespace watertight::pipeline {
 
@@ -20,8 +20,8 @@ struct SolidRepair {
   bool is_undecided = false;             // the verdict on the solid as it was read
   std::set<int> codes;                   // the errors of the solid as it was read
   std::vector<repair::Remedy> remedies;  // those that changed something
-  std::size_t facets_added = 0;          // new ones, and parts of facets that were divided
-  std::size_t facets_removed = 0;        // those that are gone or divided
+  repair::Changes changes;
+  repair::Moves moves;
   std::vector<repair::HoleFill> holes;
 };
 

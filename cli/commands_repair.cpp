@@ -167,7 +167,8 @@ Exit run(const RepairCommand& command) {
   }
   repair::RepairOptions options;
   std::string list;
-  for (const std::string& name : command.remedies) list.append(list.empty() ? "" : ",").append(name);
+  for (const std::string& name : command.remedies)
+    list.append(list.empty() ? "" : ",").append(name);
   const auto remedies = repair::remedies_of(list);
   if (!remedies) return fail(command.input, remedies.error());
   options.remedies = *remedies;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How much a repair changed a solid, in numbers and as JSON.
+// How much a repair changed a solid, in numbers.
 #pragma once
-
-#include <string>
 
 #include "repair/repair.h"
 
@@ -19,9 +17,5 @@ struct Changes {
 /// Compares the facets of a repaired solid with those that were submitted; without a repair nothing
 /// has changed. Requires the repair of that solid. Cost: that of triangulating the repaired solid.
 Changes changes_of(const Solid& submitted, const Repaired& repaired);
-
-/// A repair as UTF-8 JSON (docs/report.md, member `repair`): outcome, remedies, codes_before, counts
-/// of changes, and the holes. Deterministic.
-std::string repair_json(const Repaired& repaired, const Changes& changes);
 
 }  // namespace watertight::repair

@@ -101,8 +101,8 @@ typedef struct wt_repair_choice {
   double weld;          /* metres, from 0 to WATERTIGHT_MOST_WELD */
 } wt_repair_choice;
 #define WATERTIGHT_MOST_WELD 1000.0
-/** Answers EWKB with the EWKB of the solid as it is, if it is valid, or of the repaired one. A solid
- *  that no remedy mends fails with 22023; its findings are the detail. */
+/** Answers EWKB with the EWKB of the solid as it is, if it is valid, or of the repaired one. A
+ * solid that no remedy mends fails with 22023; its findings are the detail. */
 void wt_bridge_repair(const wt_job* job, const wt_repair_choice* choice,
                       wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers EWKB with what a repair does, as JSON (repair/changes.h). */

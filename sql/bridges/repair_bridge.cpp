@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "formats/ewkb.h"
-#include "repair/changes.h"
+#include "repair/repair_json.h"
 #include "sql/judge.h"
 #include "sql/reply.h"
 
@@ -71,8 +71,7 @@ void repair_report_into(const wt_job& job, const wt_repair_choice& choice, wt_re
 
 using watertight::sql::guarded;
 
-void wt_bridge_repair(const wt_job* job, const wt_repair_choice* choice,
-                      wt_reply* reply) noexcept {
+void wt_bridge_repair(const wt_job* job, const wt_repair_choice* choice, wt_reply* reply) noexcept {
   guarded(reply, [=] { watertight::sql::repair_into(*job, *choice, reply); });
 }
 

@@ -120,6 +120,7 @@ struct RepairCommand {
   std::vector<std::string> remedies{"rings", "orientation", "junctions"};  // or "all"
   double weld_metres = 0;
   std::size_t most_islands = 4;
+  std::string report;  // a file for what was done, as JSON
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
   bool is_quiet = false;

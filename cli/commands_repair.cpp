@@ -32,7 +32,7 @@ std::string fixed_text(double value, int decimals) {
 /// The facets that came, went and were turned, and the vertices that moved: "1 facet of 80.000 m2
 /// added, 2 removed". Empty without any.
 std::string changes_of(const SolidRepair& repair) {
-  const repair::Changes& changes = repair.changes;
+  const repair::RepairSummary& changes = repair.summary;
   std::vector<std::string> parts;
   if (changes.facets_added > 0) {
     std::string text = quantity(changes.facets_added, "facet");
@@ -45,9 +45,9 @@ std::string changes_of(const SolidRepair& repair) {
   if (changes.facets_turned > 0) {
     parts.push_back(quantity(changes.facets_turned, "facet") + " turned");
   }
-  if (repair.moves.vertices > 0) {
-    parts.push_back(quantity(repair.moves.vertices, "vertex", "vertices") + " moved by at most " +
-                    fixed_text(repair.moves.largest_metres, 4) + " m");
+  if (changes.moves.vertices > 0) {
+    parts.push_back(quantity(changes.moves.vertices, "vertex", "vertices") + " moved by at most " +
+                    fixed_text(changes.moves.largest_metres, 4) + " m");
   }
   std::string text;
   for (const std::string& part : parts) text.append(text.empty() ? "" : ", ").append(part);
@@ -60,13 +60,13 @@ std::string account_of(const SolidRepair& repair) {
   const auto add = [&](const std::string& part, const char* between) {
     text.append(text.empty() ? "" : between).append(part);
   };
-  if (!repair.is_repaired) {
-    for (const int code : repair.codes) {
+  if (!repair.is_repaired()) {
+    for (const int code : repair.summary.codes_before) {
       add(std::to_string(code) + ' ' + std::string(validate::finding_name(code)), ", ");
     }
-    return (repair.is_undecided ? "undecided" : "not repaired: ") + text;
+    return (repair.summary.is_undecided ? "undecided" : "not repaired: ") + text;
   }
-  for (const Remedy remedy : repair.remedies) add(std::string(to_string(remedy)), ", ");
+  for (const Remedy remedy : repair.summary.remedies) add(std::string(to_string(remedy)), ", ");
   text = "repaired: " + text;
   const std::string changes = changes_of(repair);
   return changes.empty() ? text : text + " (" + changes + ')';
@@ -94,14 +94,14 @@ void print_table(const DocumentRepair& outcome) {
   std::uint64_t removed = 0;
   std::uint64_t moved = 0;
   for (const SolidRepair& repair : outcome.repairs) {
-    added += repair.changes.facets_added;
-    removed += repair.changes.facets_removed;
-    moved += repair.moves.vertices;
-    repaired += repair.is_repaired ? 1 : 0;
-    undecided += !repair.is_repaired && repair.is_undecided ? 1 : 0;
-    for (const Remedy remedy : repair.remedies) ++by_remedy[remedy];
-    if (repair.is_repaired) continue;
-    for (const int code : repair.codes) ++by_code[code];
+    added += repair.summary.facets_added;
+    removed += repair.summary.facets_removed;
+    moved += repair.summary.moves.vertices;
+    repaired += repair.is_repaired() ? 1 : 0;
+    undecided += !repair.is_repaired() && repair.summary.is_undecided ? 1 : 0;
+    for (const Remedy remedy : repair.summary.remedies) ++by_remedy[remedy];
+    if (repair.is_repaired()) continue;
+    for (const int code : repair.summary.codes_before) ++by_code[code];
   }
   print_row("features", outcome.features);
   print_row("solids", outcome.solids);
@@ -124,8 +124,8 @@ void print_table(const DocumentRepair& outcome) {
 Exit exit_of_repair(const DocumentRepair& outcome) {
   Exit exit = Exit::valid;
   for (const SolidRepair& repair : outcome.repairs) {
-    if (repair.is_repaired) continue;
-    exit = worse(exit, repair.is_undecided ? Exit::undecided : Exit::invalid);
+    if (repair.is_repaired()) continue;
+    exit = worse(exit, repair.summary.is_undecided ? Exit::undecided : Exit::invalid);
   }
   return exit;
 }
@@ -187,6 +187,11 @@ Exit run(const RepairCommand& command) {
   }
   const Exit saved = save_documents({&*document, 1}, command.input, command.output);
   if (saved != Exit::valid) return saved;
+  if (!command.report.empty()) {
+    const std::string report = pipeline::repair_report_json(*outcome) + '\n';
+    const Status written = files::write_file(command.report, as_bytes(report));
+    if (!written) return fail(command.report, written.error());
+  }
   if (command.output == "-") return exit_of_repair(*outcome);
   if (!command.is_quiet) {
     for (const SolidRepair& repair : outcome->repairs) print(repair);

@@ -268,6 +268,7 @@ void add_repair(CLI::App& app, RepairCommand& command, Chosen& chosen) {
   sub->add_option("--weld", command.weld_metres, "largest move of a vertex by weld, metres")
       ->check(in_range(0, 1000, "from 0 to 1000"))
       ->capture_default_str();
+  sub->add_option("--report", command.report, "a file that gets what was done as JSON");
   sub->add_option("--islands", command.most_islands,
                   "most islands of a hole for which fill looks for the best triangles")
       ->check(in_range(0, 5, "from 0 to 5"))

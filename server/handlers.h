@@ -70,6 +70,11 @@ inline constexpr std::string_view kSubmitParameters[] = {
     "f",       "invalid",        "surfaces", "planarity", "planarity-angle",
     "overlap", "exact-overlaps", "proof",    "strict"};
 
+/// The parameters of a document that is repaired.
+inline constexpr std::string_view kRepairParameters[] = {
+    "f",       "to",        "remedies",        "weld",  "islands",
+    "invalid", "planarity", "planarity-angle", "proof", "strict"};
+
 /// The parameters of a file that becomes a job.
 inline constexpr std::string_view kJobParameters[] = {
     "collection",      "name",    "invalid",        "surfaces", "planarity",
@@ -110,6 +115,7 @@ Response get_report(const RoutedRequest& request);
 Response get_statistics(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
 Response post_convert(const RoutedRequest& request);
+Response post_repair(const RoutedRequest& request);
 Response post_encode(const RoutedRequest& request);
 Response post_decode(const RoutedRequest& request);
 Response post_job(const RoutedRequest& request);

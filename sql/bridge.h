@@ -105,7 +105,7 @@ typedef struct wt_repair_choice {
  * solid that no remedy mends fails with 22023; its findings are the detail. */
 void wt_bridge_repair(const wt_job* job, const wt_repair_choice* choice,
                       wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** Answers EWKB with what a repair does, as JSON (repair/changes.h). */
+/** Answers EWKB with what a repair does, as JSON (repair/summary_json.h). */
 void wt_bridge_repair_report(const wt_job* job, const wt_repair_choice* choice,
                              wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers EWKB with a blob, which states the rules. An invalid solid fails with 22023; its

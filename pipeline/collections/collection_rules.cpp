@@ -10,7 +10,14 @@ namespace {
 constexpr double kWidestMetres = 1000;
 constexpr double kWidestDegrees = 90;
 
-/// Sets a number above 0 (or from 0), at most `limit`.
+Status read_truth(std::string_view name, std::string_view value, bool& truth) {
+  truth = value == "true";
+  if (truth || value == "false") return Done{};
+  return Error{ErrorCode::invalid_argument, std::string(name).append(" is true or false")};
+}
+
+}  // namespace
+
 Status read_number(std::string_view name, std::string_view value, bool can_be_zero, double limit,
                    double& number) {
   double read = 0;
@@ -25,14 +32,6 @@ Status read_number(std::string_view name, std::string_view value, bool can_be_ze
   return Error{ErrorCode::invalid_argument,
                message.append(", at most ").append(std::to_string(static_cast<int>(limit)))};
 }
-
-Status read_truth(std::string_view name, std::string_view value, bool& truth) {
-  truth = value == "true";
-  if (truth || value == "false") return Done{};
-  return Error{ErrorCode::invalid_argument, std::string(name).append(" is true or false")};
-}
-
-}  // namespace
 
 Status apply_rule(std::string_view name, std::string_view value, IngestOptions& options) {
   Tolerances& tolerances = options.certify.tolerances;

@@ -23,6 +23,11 @@ inline constexpr std::array<std::string_view, 6> kRuleNames{
 /// (tetrahedralization or boundary).
 using Rules = std::vector<std::pair<std::string, std::string>>;
 
+/// Sets a number above 0 (or from 0), at most `limit`, from its text. Errors: invalid_argument,
+/// which names the parameter.
+Status read_number(std::string_view name, std::string_view value, bool can_be_zero, double limit,
+                   double& number);
+
 /// Sets one rule. Errors: invalid_argument for another name or a value that it cannot have.
 Status apply_rule(std::string_view name, std::string_view value, IngestOptions& options);
 

@@ -7,7 +7,6 @@
 
 #include "formats/city_json/city_json.h"
 #include "geometry/parallel.h"
-#include "validate/finding_kinds.h"
 
 namespace watertight::pipeline {
 namespace {
@@ -19,21 +18,6 @@ struct SolidPlace {
   std::size_t feature = 0;
   std::size_t solid = 0;
 };
-
-SolidRepair described(const Feature& feature, const SubmittedSolid& submitted,
-                      const Repaired& repaired) {
-  SolidRepair repair;
-  repair.source = submitted.source;
-  repair.feature = feature.id;
-  repair.is_repaired = repaired.outcome == Repaired::Outcome::repaired;
-  repair.is_undecided = repaired.before.verdict == Verdict::undecided;
-  repair.codes = validate::error_codes(repaired.before.findings);
-  repair.remedies = repaired.remedies;
-  repair.changes = repair::changes_of(submitted.solid, repaired);
-  repair.moves = repaired.moves;
-  repair.holes = repaired.holes;
-  return repair;
-}
 
 }  // namespace
 
@@ -65,8 +49,9 @@ Result<DocumentRepair> repair_document(Document& document, delaunay::EngineWorke
     }
     const Feature& feature = document.features[places[i].feature];
     const SubmittedSolid& submitted = feature.solids[places[i].solid];
-    SolidRepair repair = described(feature, submitted, *results[i]);
-    if (repair.is_repaired) {
+    SolidRepair repair{submitted.source, feature.id,
+                       repair::summary_of(submitted.solid, *results[i])};
+    if (repair.is_repaired()) {
       auto solid = repair::on_submitted_vertices(submitted.solid, *results[i]->edits);
       if (!solid) return std::move(solid).error();
       edits[places[i].feature].push_back(

@@ -3,12 +3,12 @@
 // Repairs the solids of a document, and puts the repaired ones into it.
 #pragma once
 
-#include <set>
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "formats/document.h"
-#include "repair/changes.h"
+#include "repair/summary.h"
 
 namespace watertight::pipeline {
 
@@ -16,13 +16,9 @@ namespace watertight::pipeline {
 struct SolidRepair {
   SolidSource source;
   std::string feature;
-  bool is_repaired = false;
-  bool is_undecided = false;             // the verdict on the solid as it was read
-  std::set<int> codes;                   // the errors of the solid as it was read
-  std::vector<repair::Remedy> remedies;  // those that changed something
-  repair::Changes changes;
-  repair::Moves moves;
-  std::vector<repair::HoleFill> holes;
+  repair::RepairSummary summary;
+
+  bool is_repaired() const { return summary.outcome == repair::Repaired::Outcome::repaired; }
 };
 
 struct DocumentRepair {
@@ -30,6 +26,8 @@ struct DocumentRepair {
   std::uint64_t solids = 0;
   std::uint64_t valid_as_read = 0;
   std::vector<SolidRepair> repairs;  // in document order
+
+  bool is_all_valid() const { return std::ranges::all_of(repairs, &SolidRepair::is_repaired); }
 };
 
 /// Repairs the solids of a document on `threads` threads. Solids that are valid, and those that no
@@ -37,5 +35,8 @@ struct DocumentRepair {
 /// Errors: those of formats::replace_solids(). Cost: that of repair::repair().
 Result<DocumentRepair> repair_document(Document& document, delaunay::EngineWorkers* workers,
                                        const repair::RepairOptions& options, unsigned threads);
+
+/// The outcome as UTF-8 JSON (docs/report.md, "Repairs"). Deterministic.
+std::string repair_report_json(const DocumentRepair& outcome);
 
 }  // namespace watertight::pipeline

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Handlers that return the document of the body in another form: POST /convert, /encode, /decode.
+// Handlers that return the document of the body in another form: POST /convert, /repair, /encode,
+// /decode.
 #include <array>
 #include <optional>
 
 #include "formats/surface.h"
 #include "pipeline/container.h"
+#include "pipeline/repaired/repair_document.h"
 #include "server/documents/rules.h"
 #include "server/documents/submission.h"
 
@@ -79,6 +81,28 @@ Result<Document> only_document(const RoutedRequest& request) {
                                            " documents; `watertight decode` writes each"};
 }
 
+/// Whether a client wants to know what a repair does rather than the document.
+bool is_report_wanted(const RoutedRequest& request) {
+  if (const std::string* named = request.target.parameter("to")) return *named == "report";
+  std::vector<std::string_view> offers;
+  for (const WrittenFormat& format : kWritten) offers.push_back(format.type);
+  offers.push_back(kJson);
+  const auto chosen = negotiate(request.request.header("accept"), offers);
+  return chosen && *chosen == kWritten.size();
+}
+
+Error cancelled() { return {ErrorCode::cancelled, "the request was cancelled"}; }
+
+/// The answer 422 to a document with solids that no remedy mended.
+Response refused_repair(const pipeline::DocumentRepair& outcome) {
+  Problem problem;
+  problem.status = 422;
+  problem.kind = "invalid-solids";
+  problem.detail = "the document has solids that the remedies did not make valid";
+  problem.extension = "{\"report\":" + pipeline::repair_report_json(outcome) + "}";
+  return to_response(problem);
+}
+
 }  // namespace
 
 Response post_convert(const RoutedRequest& request) {
@@ -91,6 +115,32 @@ Response post_convert(const RoutedRequest& request) {
   if (*surfaces == formats::Surfaces::as_solids) {
     const auto turned = formats::turn_surfaces_into_solids(*conversion.document);
     if (!turned) return to_response(problem_of_body(turned.error()));
+  }
+  return converted(*conversion.document, *wanted);
+}
+
+Response post_repair(const RoutedRequest& request) {
+  const bool wants_report = is_report_wanted(request);
+  const auto wanted = wants_report ? std::optional(kWritten[0]) : wanted_format(request);
+  if (!wanted) return refuse_written_formats();
+  const auto options = repair_options(request);
+  if (!options) return to_response(to_problem(options.error()));
+  const std::string* invalid = request.target.parameter("invalid");
+  if (invalid != nullptr && *invalid != "keep" && *invalid != "refuse") {
+    return refuse(400, "invalid-argument", "invalid is keep or refuse");
+  }
+  Conversion conversion = read_conversion(request, wanted->format, formats::Surfaces::ignore, true);
+  if (conversion.problem) return to_response(*conversion.problem);
+  const auto threads = static_cast<unsigned>(request.service.options.threads_per_request);
+  const auto outcome =
+      pipeline::repair_document(*conversion.document, request.service.workers, *options, threads);
+  if (request.is_cancelled && request.is_cancelled()) return to_response(to_problem(cancelled()));
+  if (!outcome) return to_response(problem_of_body(outcome.error()));
+  if (invalid != nullptr && *invalid == "refuse" && !outcome->is_all_valid()) {
+    return refused_repair(*outcome);
+  }
+  if (wants_report) {
+    return {200, std::string(kJson), pipeline::repair_report_json(*outcome) + "\n", {}};
   }
   return converted(*conversion.document, *wanted);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/documents/rules.h"
 
+#include <tuple>
+
 #include "pipeline/collections/collection_rules.h"
 #include "pipeline/outcome_json.h"
 #include "server/items/preconditions.h"
@@ -31,6 +33,30 @@ Status read_rules(const Target& target, pipeline::IngestOptions& options) {
     if (Status read = pipeline::apply_rule(name, *value, options); !read) return read;
   }
   return Done{};
+}
+
+Result<repair::RepairOptions> repair_options(const RoutedRequest& request) {
+  pipeline::IngestOptions rules = ingest_options(request.service, request.is_cancelled);
+  if (Status read = read_rules(request.target, rules); !read) return std::move(read).error();
+  repair::RepairOptions options;
+  options.certify = rules.certify;
+  if (const std::string* list = request.target.parameter("remedies")) {
+    auto remedies = repair::remedies_of(*list);
+    if (!remedies) return std::move(remedies).error();
+    options.remedies = *std::move(remedies);
+  }
+  constexpr double kMostMetres = 1000;
+  constexpr double kMostIslands = 5;
+  double islands = static_cast<double>(options.most_islands);
+  for (const auto& [name, most, number] : {std::tuple("weld", kMostMetres, &options.weld_metres),
+                                           {"islands", kMostIslands, &islands}}) {
+    const std::string* text = request.target.parameter(name);
+    if (text == nullptr) continue;
+    const Status read = pipeline::read_number(name, *text, true, most, *number);
+    if (!read) return read.error();
+  }
+  options.most_islands = static_cast<std::size_t>(islands);
+  return options;
 }
 
 Status read_submit_rules(const Target& target, pipeline::IngestOptions& options) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pipeline/pipeline.h"
+#include "repair/repair.h"
 #include "server/handlers.h"
 
 namespace watertight::server {
@@ -24,6 +25,10 @@ Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request);
 /// Reads the rules by which solids are judged: planarity, planarity-angle, overlap, exact-overlaps,
 /// proof, strict. Errors: invalid_argument.
 Status read_rules(const Target& target, pipeline::IngestOptions& options);
+
+/// How solids are repaired: remedies, weld, islands, and the rules by which they are judged.
+/// Errors: invalid_argument.
+Result<repair::RepairOptions> repair_options(const RoutedRequest& request);
 
 /// The rule for surfaces that are kept: as they came, or closed ones as solids. Errors:
 /// invalid_argument.

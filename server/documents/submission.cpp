@@ -292,7 +292,7 @@ std::string_view media_type_of(Format format) {
 }
 
 Conversion read_conversion(const RoutedRequest& request, std::optional<Format> to,
-                           formats::Surfaces surfaces) {
+                           formats::Surfaces surfaces, bool keeps_city_text) {
   Conversion conversion;
   const auto stated = stated_format(request, AcceptedFormats::all);
   if (!stated) {
@@ -305,9 +305,10 @@ Conversion read_conversion(const RoutedRequest& request, std::optional<Format> t
   formats::ReadOptions options;
   options.limits = request.service.options.limits;
   options.split_features = false;
-  options.keep_text = !to;
   options.surfaces = surfaces;
   const Format from = format_of_content(*stated, body);
+  const bool is_city_model = from == Format::city_json || from == Format::city_json_seq;
+  options.keep_text = !to || (keeps_city_text && is_city_model);
   auto document = to ? pipeline::read_to_convert(as_bytes(body), from, *to, options)
                      : formats::read_document(as_bytes(body), from, options);
   if (document) {

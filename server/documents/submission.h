@@ -43,8 +43,10 @@ struct Conversion {
 };
 /// Reads the document in a body, of any format, to write it as `to`; nothing: with its text, to be
 /// written as it was.
+/// With `keeps_city_text` the text of city models is kept too, so that their features can be
+/// edited.
 Conversion read_conversion(const RoutedRequest& request, std::optional<Format> to,
-                           formats::Surfaces surfaces);
+                           formats::Surfaces surfaces, bool keeps_city_text = false);
 
 /// The media types of bodies whose features can be stored, with commas between them.
 std::string storable_types();

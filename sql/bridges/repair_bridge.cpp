@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "formats/ewkb.h"
-#include "repair/repair_json.h"
+#include "repair/summary_json.h"
 #include "sql/judge.h"
 #include "sql/reply.h"
 
@@ -62,8 +62,8 @@ void repair_into(const wt_job& job, const wt_repair_choice& choice, wt_reply* re
 void repair_report_into(const wt_job& job, const wt_repair_choice& choice, wt_reply* reply) {
   const auto input = repaired(job, choice, reply);
   if (!input) return;
-  const repair::Changes changes = repair::changes_of(input->submitted, input->repaired);
-  answer(reply, as_bytes(repair::repair_json(input->repaired, changes)));
+  const repair::RepairSummary summary = repair::summary_of(input->submitted, input->repaired);
+  answer(reply, as_bytes(repair::summary_json(summary)));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ HOMES = [
     (r"(postgresql/)?(libpq-fe|libpq-events)\.h", "libpq",
      [r"store/", r"tests/unit/store/", r"tests/integration/", r"bench/"]),
     (r"nlohmann/", "nlohmann-json",
-     [r"formats/", r"tiles/", r"cql2/", r"geopackage/", r"server/", r"cli/", r"validate/report_json", r"repair/repair_json", r"report/stored_findings", r"tests/", r"bench/"]),
+     [r"formats/", r"tiles/", r"cql2/", r"geopackage/", r"server/", r"cli/", r"validate/report_json", r"report/stored_findings", r"tests/", r"bench/"]),
     (r"CGAL/", "CGAL",
      [r"geometry/", r"tessellate/", r"delaunay/", r"tests/", r"bench/"]),
     (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),

@@ -21,15 +21,20 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 TEST_CASE_METHOD(Fixture, "repair mends six of the eleven samples, and says how") {
-  const Ran ran = run("repair " + kInvalid + " -o mended.city.jsonl --remedies all");
+  const Ran ran =
+      run("repair " + kInvalid + " -o mended.city.jsonl --remedies all --report r.json");
   CHECK(ran.status == 1);
-  for (const char* part :
-       {"open-box LoD 1.2: repaired: fill (1 facet added, 0 removed)",
-        "flipped-facet LoD 1.2: repaired: orientation", "warped-roof LoD 1.2: repaired: facets",
-        "shared-edge LoD 1.2: not repaired: 303 NON_MANIFOLD_CASE",
-        "  repaired                                           6"}) {
+  for (const char* part : {"open-box LoD 1.2: repaired: fill (1 facet of 80.000 m2 added)",
+                           "flipped-facet LoD 1.2: repaired: orientation (1 facet turned)",
+                           "warped-roof LoD 1.2: repaired: facets",
+                           "shared-edge LoD 1.2: not repaired: 303 NON_MANIFOLD_CASE",
+                           "  repaired                                           6"}) {
     CHECK(ran.output.find(part) != std::string::npos);
   }
+  const Json report = Json::parse(read("r.json"));
+  CHECK(report["repaired"] == 6);
+  CHECK(report["repairs"][0]["repair"]["area_added"] == 80.0);
+  CHECK(report["repairs"][0]["repair"]["codes_before"] == Json({302}));
   CHECK(run("validate -q mended.city.jsonl").output.find("5 features of 11 are invalid") !=
         std::string::npos);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 
 #include "geometry/canonical_form.h"
-#include "repair/repair.h"
+#include "repair/summary_json.h"
 #include "tests/solids/builders.h"
 #include "tests/solids/defects.h"
 
@@ -227,6 +228,36 @@ TEST_CASE("a court on sloping ground is filled together with its border") {
   const Repaired in_plan = repair(solids::solid_of(shape, solids::millimetres()), nullptr, options);
   REQUIRE(in_plan.outcome == Outcome::repaired);
   CHECK(in_plan.holes[0].method == "plan");
+}
+
+TEST_CASE("lists of remedies are read, and others refused") {
+  CHECK(remedies_of("rings").value() == std::vector{Remedy::rings});
+  CHECK(remedies_of("fill,rings,fill").value() == std::vector{Remedy::rings, Remedy::fill});
+  REQUIRE(remedies_of("all"));
+  CHECK(remedies_of("all")->size() == 6);
+  for (const char* list : {"", "glue", "rings,", ",rings", "rings fill", "All"}) {
+    INFO(list);
+    CHECK(!remedies_of(list));
+  }
+}
+
+TEST_CASE("the summary of a repair counts what changed") {
+  Shape shape = a_box();
+  std::ranges::reverse(shape[0][1][0]);  // turned
+  shape[0].erase(shape[0].begin());      // missing, 8 m by 8 m
+  const Solid solid = solids::solid_of(shape, solids::millimetres());
+  const Repaired result = repair(solid, nullptr, everything());
+  REQUIRE(result.outcome == Outcome::repaired);
+  const RepairSummary summary = summary_of(solid, result);
+  CHECK(summary.facets_added == 1);
+  CHECK(summary.facets_removed == 0);
+  CHECK(summary.facets_turned == 1);
+  CHECK(summary.area_added == Catch::Approx(64));
+  REQUIRE(summary.volume);
+  CHECK(*summary.volume == Catch::Approx(512));
+  CHECK(summary.codes_before.contains(302));
+  CHECK(summary.moves.vertices == 0);
+  CHECK(summary_json(summary).find(R"("method":"facet")") != std::string::npos);
 }
 
 TEST_CASE("a remedy that was not asked for is not applied") {

@@ -58,6 +58,59 @@ TEST_CASE_METHOD(ConversionRoutes,
   CHECK(feature["geometry"]["type"] == "MultiPolygon");
 }
 
+TEST_CASE_METHOD(ConversionRoutes, "invalid solids come back repaired, and what was done") {
+  const std::string text = test::read_text(test::source_path("examples/invalid.city.jsonl"));
+  const auto report = send_body("/repair?remedies=all&to=report", text);
+  INFO(report.body);
+  REQUIRE(report.status == 200);
+  CHECK(report.content_type == "application/json");
+  const Json json = Json::parse(report.body);
+  CHECK(json["solids"] == 11);
+  CHECK(json["repaired"] == 6);
+  REQUIRE(json["repairs"].size() == 11);
+  CHECK(json["repairs"][0]["repair"]["remedies"] == Json({"fill"}));
+  CHECK(json["repairs"][0]["repair"]["holes"][0]["method"] == "facet");
+  CHECK(send_body("/repair?remedies=all", text, {{"accept", "application/json"}}).body ==
+        report.body);
+  const auto mended = send_body("/repair?remedies=all&to=cityjsonseq", text);
+  REQUIRE(mended.status == 200);
+  CHECK(mended.content_type == "application/city+json-seq");
+  const auto judged = send_body("/validate", mended.body);
+  REQUIRE(judged.status == 200);
+  CHECK(Json::parse(test::whole(judged))["features_overview"][0]["valid"] == 6);
+  const auto as_model = send_body("/repair?remedies=all", text);
+  CHECK(as_model.content_type == "application/city+json");
+  CHECK(Json::parse(as_model.body)["CityObjects"].size() == 11);
+  CHECK(Json::parse(send_body("/repair?to=report", text).body)["repaired"] == 3);
+}
+
+TEST_CASE_METHOD(ConversionRoutes,
+                 "a document in which solids stay invalid is refused on request") {
+  const std::string text = test::read_text(test::source_path("examples/invalid.city.jsonl"));
+  const auto refused = send_body("/repair?remedies=all&invalid=refuse", text);
+  CHECK(refused.status == 422);
+  const Json problem = Json::parse(refused.body);
+  CHECK(problem["type"] == "urn:watertight:problem:invalid-solids");
+  CHECK(problem["report"]["repaired"] == 6);
+  const std::string valid = test::read_text(test::source_path("examples/delft.city.jsonl"));
+  const std::string first_two = valid.substr(0, valid.find('\n', valid.find('\n') + 1) + 1);
+  const auto kept = send_body("/repair?invalid=refuse&to=cityjsonseq", first_two);
+  CHECK(kept.status == 200);
+  CHECK(kept.body == first_two);
+}
+
+TEST_CASE_METHOD(ConversionRoutes, "parameters of a repair that are wrong are refused") {
+  const std::string text = golden("102.city.json");
+  for (const char* query : {"remedies=glue", "remedies=", "weld=-1", "weld=nan", "weld=1001",
+                            "islands=6", "invalid=skip", "planarity=0", "overlap=1"}) {
+    INFO(query);
+    const auto refused = send_body(std::string("/repair?") + query, text);
+    CHECK(refused.status == 400);
+  }
+  CHECK(send_body("/repair?to=pdf", text).status == 406);
+  CHECK(send_body("/repair", "no document").status >= 400);
+}
+
 TEST_CASE_METHOD(ConversionRoutes,
                  "a document that is not valid is not encoded unless that is wanted") {
   const std::string text = golden("102.city.json");

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "repair/changes.h"
+#include "repair/summary.h"
 
 #include <vector>
 
 #include "geometry/vector3.h"
 #include "tessellate/facets.h"
+#include "validate/finding_kinds.h"
 
 namespace watertight::repair {
 namespace {
@@ -48,36 +49,47 @@ double new_area(const EditedSolid& edits, const std::vector<const EditedFacet*>&
   return area;
 }
 
-}  // namespace
-
-Changes changes_of(const Solid& submitted, const Repaired& repaired) {
-  Changes changes;
-  if (!repaired.edits) return changes;
+void count_facets(const Solid& submitted, const EditedSolid& edits, RepairSummary& summary) {
   const EditedSolid before = edited(submitted);
   const std::vector<const EditedFacet*> old = facets_of(before);
-  const std::vector<const EditedFacet*> facets = facets_of(*repaired.edits);
+  const std::vector<const EditedFacet*> facets = facets_of(edits);
   const Vector3 units = metres_per_unit(before);
   std::vector<std::size_t> parts(old.size());
   for (const EditedFacet* facet : facets) {
     if (facet->source == kNone) {
-      ++changes.facets_added;
+      ++summary.facets_added;
     } else {
       ++parts[facet->source];
     }
   }
   for (const std::size_t count : parts) {
     if (count == 1) continue;
-    ++changes.facets_removed;
-    changes.facets_added += count;
+    ++summary.facets_removed;
+    summary.facets_added += count;
   }
   for (const EditedFacet* facet : facets) {
     if (facet->source == kNone || parts[facet->source] != 1) continue;
     const double agreement = geometry::dot(area_vector(before, old[facet->source]->rings[0], units),
-                                           area_vector(*repaired.edits, facet->rings[0], units));
-    if (agreement < 0) ++changes.facets_turned;
+                                           area_vector(edits, facet->rings[0], units));
+    if (agreement < 0) ++summary.facets_turned;
   }
-  changes.area_added = new_area(*repaired.edits, facets);
-  return changes;
+  summary.area_added = new_area(edits, facets);
+}
+
+}  // namespace
+
+RepairSummary summary_of(const Solid& submitted, const Repaired& repaired) {
+  RepairSummary summary;
+  summary.outcome = repaired.outcome;
+  summary.is_undecided = repaired.before.verdict == Verdict::undecided;
+  summary.codes_before = validate::error_codes(repaired.before.findings);
+  if (!repaired.edits) return summary;
+  summary.remedies = repaired.remedies;
+  count_facets(submitted, *repaired.edits, summary);
+  summary.moves = repaired.moves;
+  if (repaired.after->report.measures) summary.volume = repaired.after->report.measures->volume;
+  summary.holes = repaired.holes;
+  return summary;
 }
 
 }  // namespace watertight::repair

@@ -117,7 +117,7 @@ Exit run(const ConvertCommand& command);
 struct RepairCommand {
   std::string input;
   std::string output;
-  std::vector<std::string> remedies{"rings", "orientation", "junctions"};  // or "all"
+  std::string remedies = "rings,orientation,junctions";  // or "all"
   double weld_metres = 0;
   std::size_t most_islands = 4;
   std::string report;  // a file for what was done, as JSON
@@ -190,6 +190,8 @@ struct IngestCommand {
   std::string collection;
   std::string invalid;   // "" for the policy of the collection
   std::string rejected;  // file for what --invalid skip leaves out, "" for none
+  std::string remedies;  // that repair what is not valid before it is stored, "" for none
+  double weld_metres = 0;
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
   std::string contract = "exact";

@@ -27,6 +27,11 @@ namespace {
 
 pipeline::IngestOptions ingest_options(const IngestCommand& command, formats::Contract contract) {
   pipeline::IngestOptions options;
+  if (!command.remedies.empty()) {
+    options.repair.emplace();
+    options.repair->remedies = *repair::remedies_of(command.remedies);
+    options.repair->weld_metres = command.weld_metres;
+  }
   options.collection = command.collection;
   options.threads = command.jobs;
   options.contract = contract;

@@ -166,12 +166,7 @@ Exit run(const RepairCommand& command) {
                  printable(note).c_str());
   }
   repair::RepairOptions options;
-  std::string list;
-  for (const std::string& name : command.remedies)
-    list.append(list.empty() ? "" : ",").append(name);
-  const auto remedies = repair::remedies_of(list);
-  if (!remedies) return fail(command.input, remedies.error());
-  options.remedies = *remedies;
+  options.remedies = *repair::remedies_of(command.remedies);
   options.most_islands = command.most_islands;
   options.weld_metres = command.weld_metres;
   validate::GroupOptions groups;  // solids are repaired one by one

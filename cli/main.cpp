@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "cli/arguments.h"
+#include "repair/repair.h"
 
 namespace watertight::cli {
 namespace {
@@ -253,21 +254,28 @@ void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
+CLI::Option* add_remedies(CLI::App& sub, const std::string& name, std::string& remedies,
+                          double& weld_metres) {
+  sub.add_option("--weld", weld_metres, "largest move of a vertex by weld, metres")
+      ->check(in_range(0, 1000, "from 0 to 1000"))
+      ->capture_default_str();
+  return sub
+      .add_option(name, remedies,
+                  "remedies for invalid solids: rings, orientation and junctions guess nothing; "
+                  "weld (with --weld), facets and fill do; all: every one")
+      ->type_name("LIST")
+      ->check([](const std::string& list) {
+        const auto read = repair::remedies_of(list);
+        return read ? std::string() : read.error().message;
+      });
+}
+
 void add_repair(CLI::App& app, RepairCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("repair", "Make invalid solids valid by the least change, and prove it");
   sub->add_option("IN", command.input, "document; - for standard input")->required();
   sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
-  sub->add_option("--remedies", command.remedies,
-                  "rings, orientation and junctions guess nothing; weld (with --weld), facets and "
-                  "fill do; all: every one")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember({"rings", "orientation", "junctions", "weld", "facets", "fill", "all"}))
-      ->capture_default_str();
-  sub->add_option("--weld", command.weld_metres, "largest move of a vertex by weld, metres")
-      ->check(in_range(0, 1000, "from 0 to 1000"))
-      ->capture_default_str();
+  add_remedies(*sub, "--remedies", command.remedies, command.weld_metres)->capture_default_str();
   sub->add_option("--report", command.report, "a file that gets what was done as JSON");
   sub->add_option("--islands", command.most_islands,
                   "most islands of a hole for which fill looks for the best triangles")
@@ -329,6 +337,8 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
   sub->add_option("--rejected", command.rejected,
                   "a CityJSONSeq for what --invalid skip leaves out; the findings go to FILE "
                   "with .report.json");
+  CLI::Option* repair = add_remedies(*sub, "--repair", command.remedies, command.weld_metres);
+  sub->get_option("--weld")->needs(repair);
   add_rules(*sub, command.rules);
   add_surfaces(*sub, command.surfaces);
   add_contract(*sub, command.contract);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "repair/summary_json.h"
 #include "validate/report_json.h"
 
 namespace watertight::pipeline {
@@ -17,6 +18,14 @@ void write_solid(JsonText& json, const SolidOutcome& solid) {
   if (!source.pointer.empty()) json.key("pointer").value(source.pointer);
   if (solid.blob_bytes > 0) json.key("blobBytes").value(std::uint64_t{solid.blob_bytes});
   json.key("report").raw(solid.report_json).close('}');
+}
+
+void write_repair(JsonText& json, const SolidRepair& repair) {
+  const SolidSource& source = repair.source;
+  json.open('{').key("object").value(source.object_id);
+  if (!source.lod.empty()) json.key("lod").value(source.lod);
+  json.key("geometry").value(source.geometry).key("ordinal").value(source.ordinal);
+  json.key("repair").raw(repair::summary_json(repair.summary)).close('}');
 }
 
 void write_place(JsonText& json, const InspectedGroup& group, const Place& place) {
@@ -68,6 +77,11 @@ void write_parts(JsonText& json, const FeatureOutcome& feature) {
   json.key("solids").open('[');
   for (const SolidOutcome& solid : feature.solids) write_solid(json, solid);
   json.close(']');
+  if (!feature.repairs.empty()) {
+    json.key("repairs").open('[');
+    for (const SolidRepair& repair : feature.repairs) write_repair(json, repair);
+    json.close(']');
+  }
   if (!feature.left_out.empty()) {
     json.key("leftOut").open('[');
     for (const formats::GeometryPlace& place : feature.left_out) {

@@ -18,6 +18,8 @@
 #include "codec/blob.h"
 #include "formats/city_json/city_json.h"
 #include "formats/document.h"
+#include "pipeline/repaired/solid_repair.h"
+#include "repair/repair.h"
 #include "store/solid_store.h"
 #include "validate/certify.h"
 #include "validate/groups.h"
@@ -124,6 +126,8 @@ struct FeatureOutcome {
   Verdict verdict = Verdict::undecided;
   std::vector<SolidOutcome> solids;
   std::vector<InspectedGroup> groups;
+  /// What became of the solids that were not valid as they were read (IngestOptions::repair).
+  std::vector<SolidRepair> repairs;
   /// The geometries that Policy::skip has left out of the feature that is stored.
   std::vector<formats::GeometryPlace> left_out;
   /// A CityJSONFeature or CityJSON of what is left out; "" without it, and for other formats.
@@ -158,6 +162,8 @@ struct IngestOptions : FeatureEncoding {
   /// Absent: that of the collection; refuse where there is none. A collection that the write makes
   /// gets this policy.
   std::optional<Policy> policy;
+  /// How solids are repaired before they are judged; absent: not at all. Its `certify` is not used.
+  std::optional<repair::RepairOptions> repair;
   /// How the document was read (ReadOptions::surfaces): Policy::skip reads features again.
   formats::Surfaces surfaces = formats::Surfaces::ignore;
   /// The name of features that have no id: "house" makes house, house-2, ...; "": they are refused.

@@ -70,6 +70,11 @@ inline constexpr std::string_view kSubmitParameters[] = {
     "f",       "invalid",        "surfaces", "planarity", "planarity-angle",
     "overlap", "exact-overlaps", "proof",    "strict"};
 
+/// The parameters of a document that is stored.
+inline constexpr std::string_view kStoreParameters[] = {
+    "f",     "invalid", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps",
+    "proof", "strict",  "repair",   "weld",      "islands"};
+
 /// The parameters of a document that is repaired.
 inline constexpr std::string_view kRepairParameters[] = {
     "f",       "to",        "remedies",        "weld",  "islands",

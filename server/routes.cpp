@@ -213,7 +213,7 @@ const std::vector<Route>& item_routes() {
        computing,
        write,
        post_items,
-       {std::begin(kSubmitParameters), std::end(kSubmitParameters)}},
+       {std::begin(kStoreParameters), std::end(kStoreParameters)}},
       {"GET",
        "/collections/{collectionId}/items/{itemId}",
        reading,
@@ -225,7 +225,7 @@ const std::vector<Route>& item_routes() {
        computing,
        write,
        put_item,
-       {std::begin(kSubmitParameters), std::end(kSubmitParameters)}},
+       {std::begin(kStoreParameters), std::end(kStoreParameters)}},
       {"PATCH", "/collections/{collectionId}/items/{itemId}", computing, write, patch_item, {}},
       {"DELETE", "/collections/{collectionId}/items/{itemId}", small, write, delete_item, {}},
   };

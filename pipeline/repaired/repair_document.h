@@ -7,19 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "formats/document.h"
-#include "repair/summary.h"
+#include "pipeline/repaired/solid_repair.h"
 
 namespace watertight::pipeline {
-
-/// What became of a solid that is not valid as it was read.
-struct SolidRepair {
-  SolidSource source;
-  std::string feature;
-  repair::RepairSummary summary;
-
-  bool is_repaired() const { return summary.outcome == repair::Repaired::Outcome::repaired; }
-};
 
 struct DocumentRepair {
   std::uint64_t features = 0;
@@ -29,6 +19,12 @@ struct DocumentRepair {
 
   bool is_all_valid() const { return std::ranges::all_of(repairs, &SolidRepair::is_repaired); }
 };
+
+/// Repairs the solids of a feature, one after the other. Solids that are valid, and those that no
+/// remedy mends, stay as they are; without a repair so does the feature. Returns what became of the
+/// solids that are not valid. Errors and cost: those of repair_document().
+Result<std::vector<SolidRepair>> repair_feature(Feature& feature, delaunay::EngineWorkers* workers,
+                                                const repair::RepairOptions& options);
 
 /// Repairs the solids of a document on `threads` threads. Solids that are valid, and those that no
 /// remedy mends, stay as they are, and so do the bytes of features without a repaired solid.

@@ -9,6 +9,7 @@
 #include "formats/city_json/city_json.h"
 #include "packing/text_dictionary.h"
 #include "pipeline/instances.h"
+#include "pipeline/repaired/repair_document.h"
 #include "pipeline/stored/samples.h"
 #include "pipeline/streaming/feature_stream.h"
 #include "pipeline/streaming/process.h"
@@ -72,6 +73,12 @@ Status Ingestion::look_up_collection() {
 
 Status Ingestion::add(formats::FeatureReader& reader) {
   if (Status found = look_up_collection(); !found) return found;
+  const Format format = reader.document().format;
+  if (options_.repair && format != Format::city_json && format != Format::city_json_seq) {
+    return Error{ErrorCode::unsupported,
+                 "only city models (CityJSON, CityJSONSeq) are repaired while they are stored; "
+                 "`watertight repair` and POST /repair make one of a document of another format"};
+  }
   auto shared = shared_part(reader.document(), options_.contract);
   if (!shared) return std::move(shared).error();
   TemplateInspector templates(reader.document().templates, workers_, options_.certify,
@@ -82,10 +89,17 @@ Status Ingestion::add(formats::FeatureReader& reader) {
                                Result<Feature> feature) -> Delivery {
     if (!feature) return [error = std::move(feature).error()]() -> Status { return error; };
     const std::uint32_t srid = feature->srid;
+    std::vector<SolidRepair> repairs;
+    if (options_.repair) {
+      auto repaired = repair_in(*feature);
+      if (!repaired) return [error = std::move(repaired).error()]() -> Status { return error; };
+      repairs = *std::move(repaired);
+    }
     auto processed = process(*std::move(feature), *shared, workers_, options_, templates, cells);
     if (!processed) return [error = std::move(processed).error()]() -> Status { return error; };
     const auto taken =
         std::make_shared<Processed>(Processed{std::move(processed->outcome), text.place, srid, {}});
+    taken->outcome.repairs = std::move(repairs);
     if (processed->encoded) {
       const StageTimer timer(options_.stages, Stage::packing);
       auto prepared = packer_->prepare(*std::move(processed->encoded));
@@ -99,6 +113,13 @@ Status Ingestion::add(formats::FeatureReader& reader) {
   const auto count = stream_features(reader, stream, work);
   if (!count) return count.error();
   return Done{};
+}
+
+/// Repairs the solids of a feature by the rules by which they are judged.
+Result<std::vector<SolidRepair>> Ingestion::repair_in(Feature& feature) const {
+  repair::RepairOptions options = *options_.repair;
+  options.certify = options_.certify;
+  return repair_feature(feature, workers_, options);
 }
 
 Status Ingestion::add_container(ByteView bytes, const Limits& limits, WholeModels models) {

@@ -60,6 +60,7 @@ class Ingestion {
 
  private:
   struct Processed;
+  Result<std::vector<SolidRepair>> repair_in(Feature& feature) const;
   Status take(Processed processed);
   Status look_up_collection();
   Status check_srid(const FeatureOutcome& outcome, std::uint32_t srid);

@@ -123,8 +123,12 @@ Response post_repair(const RoutedRequest& request) {
   const bool wants_report = is_report_wanted(request);
   const auto wanted = wants_report ? std::optional(kWritten[0]) : wanted_format(request);
   if (!wanted) return refuse_written_formats();
-  const auto options = repair_options(request);
-  if (!options) return to_response(to_problem(options.error()));
+  pipeline::IngestOptions rules = ingest_options(request.service, request.is_cancelled);
+  Status read = read_rules(request.target, rules);
+  repair::RepairOptions options;
+  options.certify = rules.certify;
+  if (read) read = read_remedies(request.target, "remedies", options);
+  if (!read) return to_response(to_problem(read.error()));
   const std::string* invalid = request.target.parameter("invalid");
   if (invalid != nullptr && *invalid != "keep" && *invalid != "refuse") {
     return refuse(400, "invalid-argument", "invalid is keep or refuse");
@@ -133,7 +137,7 @@ Response post_repair(const RoutedRequest& request) {
   if (conversion.problem) return to_response(*conversion.problem);
   const auto threads = static_cast<unsigned>(request.service.options.threads_per_request);
   const auto outcome =
-      pipeline::repair_document(*conversion.document, request.service.workers, *options, threads);
+      pipeline::repair_document(*conversion.document, request.service.workers, options, threads);
   if (request.is_cancelled && request.is_cancelled()) return to_response(to_problem(cancelled()));
   if (!outcome) return to_response(problem_of_body(outcome.error()));
   if (invalid != nullptr && *invalid == "refuse" && !outcome->is_all_valid()) {

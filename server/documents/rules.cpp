@@ -35,28 +35,23 @@ Status read_rules(const Target& target, pipeline::IngestOptions& options) {
   return Done{};
 }
 
-Result<repair::RepairOptions> repair_options(const RoutedRequest& request) {
-  pipeline::IngestOptions rules = ingest_options(request.service, request.is_cancelled);
-  if (Status read = read_rules(request.target, rules); !read) return std::move(read).error();
-  repair::RepairOptions options;
-  options.certify = rules.certify;
-  if (const std::string* list = request.target.parameter("remedies")) {
-    auto remedies = repair::remedies_of(*list);
+Status read_remedies(const Target& target, std::string_view list, repair::RepairOptions& options) {
+  if (const std::string* names = target.parameter(list)) {
+    auto remedies = repair::remedies_of(*names);
     if (!remedies) return std::move(remedies).error();
     options.remedies = *std::move(remedies);
   }
   constexpr double kMostMetres = 1000;
   constexpr double kMostIslands = 5;
-  double islands = static_cast<double>(options.most_islands);
+  auto islands = static_cast<double>(options.most_islands);
   for (const auto& [name, most, number] : {std::tuple("weld", kMostMetres, &options.weld_metres),
                                            {"islands", kMostIslands, &islands}}) {
-    const std::string* text = request.target.parameter(name);
+    const std::string* text = target.parameter(name);
     if (text == nullptr) continue;
-    const Status read = pipeline::read_number(name, *text, true, most, *number);
-    if (!read) return read.error();
+    if (Status read = pipeline::read_number(name, *text, true, most, *number); !read) return read;
   }
   options.most_islands = static_cast<std::size_t>(islands);
-  return options;
+  return Done{};
 }
 
 Status read_submit_rules(const Target& target, pipeline::IngestOptions& options) {
@@ -79,6 +74,14 @@ Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request) {
   if (!own) return own.error();
   if (Status rules = read_submit_rules(request.target, options); !rules) {
     return std::move(rules).error();
+  }
+  if (request.target.parameter("repair") != nullptr) {
+    options.repair.emplace();
+    const Status remedies = read_remedies(request.target, "repair", *options.repair);
+    if (!remedies) return remedies.error();
+  } else if (request.target.parameter("weld") != nullptr ||
+             request.target.parameter("islands") != nullptr) {
+    return Error{ErrorCode::invalid_argument, "weld and islands need remedies in repair="};
   }
   auto condition = write_condition(request.request);
   if (!condition) return std::move(condition).error();

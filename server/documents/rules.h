@@ -26,9 +26,9 @@ Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request);
 /// proof, strict. Errors: invalid_argument.
 Status read_rules(const Target& target, pipeline::IngestOptions& options);
 
-/// How solids are repaired: remedies, weld, islands, and the rules by which they are judged.
-/// Errors: invalid_argument.
-Result<repair::RepairOptions> repair_options(const RoutedRequest& request);
+/// Reads how solids are repaired: the remedies in the parameter `list`, weld, islands. Errors:
+/// invalid_argument.
+Status read_remedies(const Target& target, std::string_view list, repair::RepairOptions& options);
 
 /// The rule for surfaces that are kept: as they came, or closed ones as solids. Errors:
 /// invalid_argument.

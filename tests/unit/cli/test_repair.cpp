@@ -39,6 +39,15 @@ TEST_CASE_METHOD(Fixture, "repair mends six of the eleven samples, and says how"
         std::string::npos);
 }
 
+TEST_CASE_METHOD(Fixture, "lists of remedies that are wrong are refused") {
+  for (const char* list : {"glue", "rings,,fill", "\"\""}) {
+    const Ran ran = run("repair " + kInvalid + " -o m.city.jsonl --remedies " + list);
+    CHECK(ran.status == 2);
+    CHECK(ran.output.find("the remedies are rings, orientation") != std::string::npos);
+  }
+  CHECK(run("repair " + kInvalid + " -o m.city.jsonl --islands 6").status == 2);
+}
+
 TEST_CASE_METHOD(Fixture, "a repaired file does not change again") {
   CHECK(run("repair " + kInvalid + " -o a.city.jsonl --remedies all -q").status == 1);
   const Ran again = run("repair a.city.jsonl -o b.city.jsonl --remedies all -q");

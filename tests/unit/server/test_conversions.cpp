@@ -99,6 +99,35 @@ TEST_CASE_METHOD(ConversionRoutes,
   CHECK(kept.body == first_two);
 }
 
+TEST_CASE_METHOD(ConversionRoutes,
+                 "what a remedy mends is stored repaired, and the answer says so") {
+  const std::string text = test::read_text(test::source_path("examples/invalid.city.jsonl"));
+  const auto stored = send_body("/collections/mended/items?repair=all&invalid=skip", text,
+                                {{"content-type", "application/city+json-seq"}});
+  INFO(stored.body);
+  REQUIRE(stored.status == 201);
+  const Json answer = Json::parse(stored.body);
+  CHECK(answer["stored"] == 6);
+  CHECK(answer["counts"]["valid"] == 6);
+  const Json& first = answer["features"][0];
+  CHECK(first["id"] == "open-box");
+  CHECK(first["verdict"] == "valid");
+  CHECK(first["repairs"][0]["repair"]["outcome"] == "repaired");
+  CHECK(first["repairs"][0]["repair"]["area_added"] == 80.0);
+  const auto item = get("/collections/mended/items/open-box");
+  REQUIRE(item.status == 200);
+  const auto judged = send_body("/validate", test::whole(item));
+  CHECK(Json::parse(test::whole(judged))["validity"] == true);
+  for (const char* query : {"weld=0.1", "islands=2", "repair=glue", "repair=all&weld=-1"}) {
+    INFO(query);
+    const auto refused = send_body(std::string("/collections/mended/items?") + query, text,
+                                   {{"content-type", "application/city+json-seq"}});
+    CHECK(refused.status == 400);
+  }
+  CHECK(send_body("/collections/gml/items?repair=all", golden("103.gml"), {{"content-type", kGml}})
+            .status == 422);
+}
+
 TEST_CASE_METHOD(ConversionRoutes, "parameters of a repair that are wrong are refused") {
   const std::string text = golden("102.city.json");
   for (const char* query : {"remedies=glue", "remedies=", "weld=-1", "weld=nan", "weld=1001",

@@ -37,6 +37,7 @@ double first_octant(double x, double y) {
 Turn turn_to(double x, double y) {
   const double across = std::abs(x);
   const double up = std::abs(y);
+  if (across == 0 && up == 0) return 0;
   double turns = up <= across ? first_octant(across, up) : kFullTurn / 4 - first_octant(up, across);
   if (x < 0) turns = kFullTurn / 2 - turns;
   if (y < 0) turns = -turns;

@@ -13,8 +13,8 @@ namespace watertight::fill {
 using Turn = std::uint32_t;
 inline constexpr Turn kHalfTurn = Turn{1} << 31U;
 
-/// The angle from the direction (1, 0) to (x, y), counter-clockwise. Requires finite numbers that
-/// are not both zero. Error: at most 1 unit. Cost: one division.
+/// The angle from the direction (1, 0) to (x, y), counter-clockwise; 0 for (0, 0). Requires finite
+/// numbers. Error: at most 1 unit. Cost: one division.
 Turn turn_to(double x, double y);
 
 /// The smaller of the two angles between directions, at most kHalfTurn.

@@ -2,6 +2,7 @@
 #include "fill/triangulate_loops.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -29,6 +30,10 @@ struct Sorted {
   std::vector<std::size_t> loop_of;        // sorted loop -> loop
 };
 
+bool are_finite(const Point& point) {
+  return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
+}
+
 Status check(std::span<const Point> points, std::span<const Loop> loops,
              const FillOptions& options) {
   if (loops.empty()) return invalid("a filling needs a loop");
@@ -41,6 +46,9 @@ Status check(std::span<const Point> points, std::span<const Loop> loops,
     const bool is_in_range =
         std::ranges::all_of(loop, [&](Index point) { return point < points.size(); });
     if (!is_in_range) return invalid("a loop names a point that does not exist");
+    const bool is_finite =
+        std::ranges::all_of(loop, [&](Index point) { return are_finite(points[point]); });
+    if (!is_finite) return invalid("a coordinate is not a finite number");
     count += loop.size();
   }
   if (count > kMostVertices) {
@@ -51,6 +59,10 @@ Status check(std::span<const Point> points, std::span<const Loop> loops,
     if (options.behind.size() != loops.size() || options.behind[i].size() != loops[i].size()) {
       return invalid("the facets behind the loops do not match their edges");
     }
+    const bool is_finite = std::ranges::all_of(options.behind[i], [](const geometry::Vector3& v) {
+      return are_finite({v[0], v[1], v[2]});
+    });
+    if (!is_finite) return invalid("the direction of a facet is not finite");
   }
   return Done{};
 }

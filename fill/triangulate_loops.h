@@ -67,10 +67,10 @@ struct LoopFill {
 /// n + 2k - 4 triangles for n points in k loops. Does not look for intersections, except through
 /// `is_allowed` and the space.
 /// Errors: invalid_argument for a loop of fewer than 3 points, repeated or equal points, numbers
-/// out of range, points on one line, facets behind that do not match; limit_exceeded for more than
-/// 6 loops, 65,000 points or the budget; not_found if the candidates have no triangulation;
-/// cancelled. Cost: with all triples O(n^3) time for one loop, O(n^7) for two; with Delaunay
-/// triangles about linear for one loop, quadratic for two.
+/// out of range or not finite, points on one line, facets behind that do not match; limit_exceeded
+/// for more than 6 loops, 65,000 points or the budget; not_found if the candidates have no
+/// triangulation; cancelled. Cost: with all triples O(n^3) time for one loop, O(n^7) for two; with
+/// Delaunay triangles about linear for one loop, quadratic for two.
 Result<LoopFill> triangulate_loops(std::span<const Point> points, std::span<const Loop> loops,
                                    const FillOptions& options);
 

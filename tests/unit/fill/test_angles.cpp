@@ -35,6 +35,7 @@ TEST_CASE("directions along the axes are exact") {
   CHECK(turn_to(0, 3) == kHalfTurn / 2);
   CHECK(turn_to(-2, 0) == kHalfTurn);
   CHECK(turn_to(-2, -2) == kHalfTurn + kHalfTurn / 4);
+  CHECK(turn_to(0, 0) == 0);
   CHECK(turn_to(0, -0.5) == kHalfTurn + kHalfTurn / 2);
 }
 

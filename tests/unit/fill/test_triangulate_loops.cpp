@@ -160,6 +160,10 @@ TEST_CASE("loops that are no loops are refused") {
   CHECK(fill({{0, 1, 2}, {2, 3, 4}}) == ErrorCode::invalid_argument);
   CHECK(fill({{0, 1, 2}, {2, 1, 0}, {0, 1, 2}, {2, 1, 0}, {0, 1, 2}, {2, 1, 0}, {0, 1, 2}}) ==
         ErrorCode::limit_exceeded);
+  std::vector<Point> infinite = input.points;
+  infinite[3].y = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Loop> all_points{{0, 1, 2, 3, 4}};
+  CHECK(error_of(triangulate_loops(infinite, all_points, {})) == ErrorCode::invalid_argument);
   const std::vector<Point> line{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}};
   const std::vector<Loop> on_line{{0, 1, 2, 3}};
   CHECK(error_of(triangulate_loops(line, on_line, {})) == ErrorCode::invalid_argument);

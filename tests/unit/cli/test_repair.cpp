@@ -48,6 +48,39 @@ TEST_CASE_METHOD(Fixture, "lists of remedies that are wrong are refused") {
   CHECK(run("repair " + kInvalid + " -o m.city.jsonl --islands 6").status == 2);
 }
 
+/// The line of docs/findings.md on the repair of a finding.
+std::string repair_line(const std::string& page, const std::string& code) {
+  const std::size_t section = page.find("\n## " + code + ' ');
+  const std::size_t begin = page.find("- Repair: ", section);
+  const std::size_t end = page.find("- Sample: ", section);
+  return begin < end ? page.substr(begin, end - begin) : std::string();
+}
+
+TEST_CASE_METHOD(Fixture, "docs/findings.md names the remedies that mend each sample") {
+  const std::string page = test::read_text(test::source_path("docs/findings.md"));
+  std::size_t mended = 0;
+  for (const char* code :
+       {"101", "102", "104", "201", "202", "203", "204", "205", "206", "207", "208", "300",
+        "301", "302", "303", "305", "306", "307", "401", "402", "403", "404", "405"}) {
+    INFO(code);
+    const std::string sample = std::string("tests/golden/findings/") + code + ".city.json";
+    run("repair " + test::source_path(sample) +
+        " -o m.city.json --remedies all --weld 0.01 --report r.json -q");
+    const Json repair = Json::parse(read("r.json"))["repairs"][0]["repair"];
+    const std::string line = repair_line(page, code);
+    REQUIRE(!line.empty());
+    if (line == "- Repair: none.\n") {
+      CHECK(repair["outcome"] == "not-repaired");
+      continue;
+    }
+    for (const std::string remedy : repair["remedies"]) {
+      CHECK(line.find('`' + remedy + '`') != std::string::npos);
+    }
+    mended += repair["outcome"] == "repaired" ? 1 : 0;
+  }
+  CHECK(mended == 10);
+}
+
 TEST_CASE_METHOD(Fixture, "a repaired file does not change again") {
   CHECK(run("repair " + kInvalid + " -o a.city.jsonl --remedies all -q").status == 1);
   const Ran again = run("repair a.city.jsonl -o b.city.jsonl --remedies all -q");

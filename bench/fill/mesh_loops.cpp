@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Compares the best filling from Delaunay triangles with the best one from all triangles, on loops
+// of edges of a mesh, as section 4.2 of Zou, Ju and Carr 2013 does.
+//
+//   mesh_loops FILE LOOPS COUNT LEAST MOST
+//
+// Makes COUNT sets of LOOPS random loops of LEAST to MOST vertices, each the border of a disc of
+// triangles. Prints the share of sets with an area above 0.97 of the other's, and with an angle
+// less than 5 and 10 degrees above the other's for each interior edge.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bench/input.h"
+#include "fill/triangulate_loops.h"
+#include "tests/random.h"
+
+using namespace watertight;
+
+namespace {
+
+using Edge = std::pair<Index, Index>;
+
+struct Mesh {
+  std::vector<Point> points;
+  std::vector<Triangle> triangles;
+  std::map<Edge, std::size_t> triangle_of;  // directed edge -> triangle
+};
+
+Mesh mesh_of(const Solid& solid) {
+  Mesh mesh;
+  mesh.points.assign(solid.vertices().begin(), solid.vertices().end());
+  for (Index facet = 0; facet < solid.facet_count(); ++facet) {
+    const auto ring = solid.ring(solid.rings_of(facet).begin);
+    if (ring.size() != 3) continue;
+    const Triangle triangle{ring[0], ring[1], ring[2]};
+    for (std::size_t i = 0; i < 3; ++i) {
+      mesh.triangle_of[{triangle[i], triangle[(i + 1) % 3]}] = mesh.triangles.size();
+    }
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+/// The border of a disc that grows from a random triangle until it has so many vertices; nothing if
+/// it cannot grow on, or meets a taken vertex.
+std::optional<fill::Loop> random_loop(const Mesh& mesh, std::size_t size,
+                                      const std::set<Index>& taken, test::Random& random) {
+  const Triangle& first = mesh.triangles[random.below(mesh.triangles.size())];
+  fill::Loop loop(first.begin(), first.end());
+  for (int attempt = 0; attempt < 100'000 && loop.size() < size; ++attempt) {
+    const std::size_t at = random.below(loop.size());
+    const Edge edge{loop[(at + 1) % loop.size()], loop[at]};  // as the triangle outside has it
+    const auto found = mesh.triangle_of.find(edge);
+    if (found == mesh.triangle_of.end()) continue;
+    const Triangle& triangle = mesh.triangles[found->second];
+    const Index tip = *std::ranges::find_if(
+        triangle, [&](Index v) { return v != edge.first && v != edge.second; });
+    const auto place = std::ranges::find(loop, tip);
+    if (place == loop.end()) {
+      loop.insert(loop.begin() + static_cast<std::ptrdiff_t>(at) + 1, tip);
+      continue;
+    }
+    // The triangle fills a corner: the vertex in the corner leaves the border.
+    const auto corner = [&](std::size_t gone) {
+      const std::size_t n = loop.size();
+      if (n > 3) loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(gone % n));
+    };
+    if (loop[(at + 2) % loop.size()] == tip) {
+      corner(at + 1);
+    } else if (loop[(at + loop.size() - 1) % loop.size()] == tip) {
+      corner(at);
+    }
+  }
+  const bool is_free =
+      std::ranges::none_of(loop, [&](Index vertex) { return taken.contains(vertex); });
+  if (loop.size() < size || !is_free) return std::nullopt;
+  std::ranges::reverse(loop);  // with the disc missing on its left it runs the other way
+  return loop;
+}
+
+struct Compared {
+  double area_ratio = 0;
+  double degrees = 0;  // per interior edge
+};
+
+std::optional<Compared> compare(const Mesh& mesh, const std::vector<fill::Loop>& loops) {
+  std::size_t vertices = 0;
+  for (const fill::Loop& loop : loops) vertices += loop.size();
+  const auto filled = [&](fill::CandidateSpace space, fill::Objective objective) {
+    fill::FillOptions options;
+    options.space = space;
+    options.objective = objective;
+    options.max_bytes = std::size_t{8} << 30U;
+    options.max_domains = 100'000'000;
+    return fill::triangulate_loops(mesh.points, loops, options);
+  };
+  using enum fill::CandidateSpace;
+  const auto area = filled(delaunay, fill::Objective::area);
+  const auto least_area = filled(all, fill::Objective::area);
+  const auto angles = filled(delaunay, fill::Objective::angle);
+  const auto least_angles = filled(all, fill::Objective::angle);
+  if (!area || !least_area || !angles || !least_angles) return std::nullopt;
+  constexpr double kDegrees = 57.29577951308232;
+  const auto edges = static_cast<double>(vertices + 3 * loops.size() - 6);
+  return Compared{least_area->area / area->area,
+                  (angles->angle - least_angles->angle) * kDegrees / edges};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 6) return 2;
+  const auto document = bench::read_file(argv[1]);
+  if (!document || document->features.empty()) return 1;
+  const Mesh mesh = mesh_of(document->features[0].solids[0].solid);
+  const std::size_t loop_count = std::stoul(argv[2]);
+  const std::size_t count = std::stoul(argv[3]);
+  const std::size_t least = std::stoul(argv[4]);
+  const std::size_t most = std::stoul(argv[5]);
+  test::Random random(2013);
+  std::vector<Compared> results;
+  std::size_t unfilled = 0;
+  const auto start = std::chrono::steady_clock::now();
+  while (results.size() + unfilled < count) {
+    std::vector<fill::Loop> loops;
+    std::set<Index> taken;
+    while (loops.size() < loop_count) {
+      const auto loop = random_loop(mesh, least + random.below(most - least + 1), taken, random);
+      if (!loop) continue;
+      taken.insert(loop->begin(), loop->end());
+      loops.push_back(*loop);
+    }
+    if (const auto compared = compare(mesh, loops)) {
+      results.push_back(*compared);
+    } else {
+      ++unfilled;
+    }
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const auto number = [&](auto&& test) { return std::ranges::count_if(results, test); };
+  std::printf("%zu sets, %zu not filled, %.1f s\n", results.size() + unfilled, unfilled,
+              seconds.count());
+  std::printf("area_all / area_delaunay > 0.97: %td\n",
+              number([](const Compared& c) { return c.area_ratio > 0.97; }));
+  for (const double limit : {5.0, 10.0}) {
+    std::printf("angle per interior edge, delaunay - all < %.0f degrees: %td\n", limit,
+                number([&](const Compared& c) { return c.degrees < limit; }));
+  }
+  return 0;
+}

@@ -12,7 +12,7 @@ import pathlib
 import random
 import sys
 
-FILES = [(2, 10), (2, 125), (2, 250), (3, 10), (3, 30), (4, 10), (5, 10), (6, 10)]
+FILES = [(2, 10), (3, 5), (2, 125), (2, 250), (3, 10), (3, 30), (4, 10), (5, 10), (6, 10)]
 
 
 def at_corner(place, corner):

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/crs/crs.h"
+#include "geometry/vector3.h"
 
 namespace watertight::repair {
 namespace {
@@ -98,6 +99,18 @@ std::array<double, 3> metres_of(const EditedSolid& edited, Index vertex,
   const auto origin = edited.lattice.world(edited.vertices.front());
   return {(place[0] - origin[0]) * metres_per_unit[0], (place[1] - origin[1]) * metres_per_unit[1],
           (place[2] - origin[2]) * metres_per_unit[2]};
+}
+
+std::array<double, 3> area_vector(const EditedSolid& edited, const Ring& ring,
+                                  const std::array<double, 3>& metres_per_unit) {
+  using namespace geometry;
+  Vector3 area{};
+  const Vector3 first = metres_of(edited, ring[0], metres_per_unit);
+  for (std::size_t i = 2; i < ring.size(); ++i) {
+    area = area + cross(metres_of(edited, ring[i - 1], metres_per_unit) - first,
+                        metres_of(edited, ring[i], metres_per_unit) - first);
+  }
+  return area;
 }
 
 }  // namespace watertight::repair

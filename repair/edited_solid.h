@@ -51,5 +51,8 @@ void turn_over(EditedFacet& facet);
 std::array<double, 3> metres_of(const EditedSolid& edited, Index vertex,
                                 const std::array<double, 3>& metres_per_unit);
 std::array<double, 3> metres_per_unit(const EditedSolid& edited);
+/// Twice the area vector of a ring, in square metres; for measurements.
+std::array<double, 3> area_vector(const EditedSolid& edited, const Ring& ring,
+                                  const std::array<double, 3>& metres_per_unit);
 
 }  // namespace watertight::repair

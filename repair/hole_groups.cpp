@@ -2,7 +2,6 @@
 #include "repair/hole_groups.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "geometry/predicates/predicates.h"
@@ -15,19 +14,6 @@ namespace {
 
 // With more loops in a shell islands are not looked for.
 constexpr std::size_t kMostLoops = 200;
-
-/// Twice the area of a loop, as it is seen from where it is largest; in square metres.
-double size_of(const EditedSolid& solid, const Ring& loop, const std::array<double, 3>& units) {
-  using namespace geometry;
-  Vector3 area{};
-  const Vector3 first = metres_of(solid, loop[0], units);
-  for (std::size_t i = 2; i < loop.size(); ++i) {
-    const Vector3 part = cross(metres_of(solid, loop[i - 1], units) - first,
-                               metres_of(solid, loop[i], units) - first);
-    for (std::size_t axis = 0; axis < 3; ++axis) area[axis] += part[axis];
-  }
-  return length(area);
-}
 
 /// Whether a point is inside a ring in the projection along an axis, by the number of edges to its
 /// left; a point on the ring may be either.
@@ -61,7 +47,10 @@ bool is_island(const EditedSolid& solid, const Ring& outer, const Ring& loop) {
 std::vector<HoleLoops> group_loops(const EditedSolid& solid, std::vector<Ring> loops) {
   const auto units = metres_per_unit(solid);
   std::vector<std::pair<double, Ring>> by_size;
-  for (Ring& loop : loops) by_size.emplace_back(-size_of(solid, loop, units), std::move(loop));
+  for (Ring& loop : loops) {
+    const double size = geometry::length(area_vector(solid, loop, units));
+    by_size.emplace_back(-size, std::move(loop));
+  }
   std::sort(by_size.begin(), by_size.end());
   std::vector<HoleLoops> groups;
   std::vector<bool> is_taken(by_size.size());

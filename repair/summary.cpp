@@ -11,8 +11,6 @@ namespace watertight::repair {
 namespace {
 
 using geometry::Vector3;
-using geometry::operator+;
-using geometry::operator-;
 
 /// The facets of an edited solid, in their order.
 std::vector<const EditedFacet*> facets_of(const EditedSolid& solid) {
@@ -21,17 +19,6 @@ std::vector<const EditedFacet*> facets_of(const EditedSolid& solid) {
     for (const EditedFacet& facet : shell) facets.push_back(&facet);
   }
   return facets;
-}
-
-/// Twice the area vector of a ring, in square metres.
-Vector3 area_vector(const EditedSolid& solid, const Ring& ring, const Vector3& units) {
-  Vector3 area{};
-  const Vector3 first = metres_of(solid, ring[0], units);
-  for (std::size_t i = 2; i < ring.size(); ++i) {
-    area = area + geometry::cross(metres_of(solid, ring[i - 1], units) - first,
-                                  metres_of(solid, ring[i], units) - first);
-  }
-  return area;
 }
 
 /// The area of the facets that are new.

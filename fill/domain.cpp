@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fill/domain.h"
 
-#include <algorithm>
-
 namespace watertight::fill {
 namespace {
 
@@ -44,27 +42,6 @@ DomainKind kind_of(const Borders& borders, const Domain& domain) {
     if (borders.is_border(span.tail, span.head)) return DomainKind::dead;
   }
   return has_repeated_edge(domain) ? DomainKind::dead : DomainKind::open;
-}
-
-bool contains(const Borders& borders, const Domain& domain, Vertex vertex) {
-  const std::uint8_t loop = borders.loop[vertex];
-  if ((domain.untouched >> loop & 1U) != 0) return true;
-  for (std::size_t i = 0; i < domain.size; ++i) {
-    const Span& span = domain.spans[i];
-    if (borders.loop[span.head] != loop) continue;
-    if (span.sense == Sense::none) return vertex == span.head;
-    return steps_along(borders, span.sense, span.head, vertex) <=
-           segment_length(borders, domain, i);
-  }
-  return false;
-}
-
-bool has_candidates(const Borders& borders, const Candidates& candidates, const Domain& domain) {
-  const auto end = domain.spans.begin() + domain.size;
-  return std::all_of(domain.spans.begin(), end, [&](const Span& span) {
-    return std::ranges::any_of(candidates.thirds(span.edge),
-                               [&](Vertex third) { return contains(borders, domain, third); });
-  });
 }
 
 void Splitter::append(const Domain& domain, Vertex third, std::vector<Split>& splits) const {
@@ -156,11 +133,8 @@ void Splitter::divide(const Domain& domain, const Sides& sides, std::size_t segm
 
 void Splitter::append_living(Split split, std::vector<Split>& splits) const {
   for (std::size_t i = 0; i < split.count; ++i) {
-    const Domain& part = split.parts[i].domain;
-    split.parts[i].kind = kind_of(borders_, part);
+    split.parts[i].kind = kind_of(borders_, split.parts[i].domain);
     if (split.parts[i].kind == DomainKind::dead) return;
-    const bool needs_triangles = split.parts[i].kind == DomainKind::open && part.size > 1;
-    if (needs_triangles && !has_candidates(borders_, candidates_, part)) return;
   }
   splits.push_back(split);
 }

@@ -66,19 +66,13 @@ struct Split {
   std::array<Part, 2> parts;
 };
 
-/// Whether a vertex is on the boundary of a domain or on a loop inside.
-bool contains(const Borders& borders, const Domain& domain, Vertex vertex);
-
-/// Whether each spanning edge has a candidate whose third vertex is in the domain.
-bool has_candidates(const Borders& borders, const Candidates& candidates, const Domain& domain);
-
 struct SplitOptions {
   bool has_both_senses = false;  // loops inside may be passed against their sense
   bool has_angles = true;        // domains know the triangles behind their spanning edges
 };
 
 /// Appends all ways in which the triangle on the first spanning edge and a third vertex divides a
-/// domain, except those with a part that has no triangulation. The first spanning edge of a part is
+/// domain, except those with a dead part. The first spanning edge of a part is
 /// one of the triangle's: edges that were there before keep the triangles behind them, so that
 /// there are far fewer different domains than if they took turns.
 class Splitter {

@@ -4,6 +4,8 @@
 -- the shards. What changes shards goes through dblink, and is committed there at once; each step can be done again.
 \echo Use "CREATE EXTENSION watertight_shards" to load this file. \quit
 
+-- The bounds are read without the table they belong to (0): otherwise a part that has just moved is missing for a
+-- statement that began before.
 CREATE VIEW wt_parts AS
   SELECT i.inhparent::regclass AS parent, c.oid::regclass AS part, s.srvname::text AS shard,
          b.bound[1]::int AS modulus, b.bound[2]::int AS remainder
@@ -11,7 +13,7 @@ CREATE VIEW wt_parts AS
   JOIN pg_class c ON c.oid = i.inhrelid
   JOIN pg_foreign_table t ON t.ftrelid = c.oid
   JOIN pg_foreign_server s ON s.oid = t.ftserver
-  CROSS JOIN LATERAL regexp_match(pg_get_expr(c.relpartbound, c.oid), 'modulus (\d+), remainder (\d+)') AS b(bound)
+  CROSS JOIN LATERAL regexp_match(pg_get_expr(c.relpartbound, 0), 'modulus (\d+), remainder (\d+)') AS b(bound)
   WHERE b.bound IS NOT NULL;
 GRANT SELECT ON wt_parts TO PUBLIC;
 COMMENT ON VIEW wt_parts IS 'the parts of spread tables, and the shards that have their rows';
@@ -146,14 +148,17 @@ CREATE FUNCTION wt_load(parent regclass, query text, batch int DEFAULT 500, skip
         FROM (SELECT i.batch, i.shard, string_agg(format(
                 'INSERT INTO public.%%I (%1$s) SELECT * FROM (SELECT %2$s FROM (VALUES %%s) v(%1$s)) w WHERE %3$s ON CONFLICT DO NOTHING',
                 i.part, i.rows), '; ') AS text
-              FROM (SELECT r.batch, p.shard, c.relname AS part, string_agg('(' || concat_ws(', ', %4$s) || ')', ', ') AS rows
+              FROM (SELECT r.batch, coalesce(p.shard, '') AS shard, coalesce(c.relname, '') AS part, string_agg('(' || concat_ws(', ', %4$s) || ')', ', ') AS rows
                     FROM (SELECT (row_number() OVER () - 1) / %5$s AS batch, * FROM pg_temp.wt_load_rows) r
-                    JOIN @extschema@.wt_parts p ON p.parent = %6$L::regclass AND satisfies_hash_partition(%7$s::oid, p.modulus, p.remainder, %8$s)
-                    JOIN pg_class c ON c.oid = p.part
+                    LEFT JOIN @extschema@.wt_parts p ON p.parent = %6$L::regclass AND satisfies_hash_partition(%7$s::oid, p.modulus, p.remainder, %8$s)
+                    LEFT JOIN pg_class c ON c.oid = p.part
                     GROUP BY 1, 2, 3) i
               GROUP BY 1, 2) b
         GROUP BY 1 ORDER BY 1$q$,
         array_to_string(columns, ', '), replace(casts, '''', ''''''), coalesce(CASE WHEN skip_invalid THEN solids END, 'true'), texts, batch, parent, parent::oid, key) LOOP
+      IF '' = ANY (statement.shards) THEN
+        RAISE 'a row belongs to no part of %', parent USING ERRCODE = 'check_violation', HINT = 'SELECT wt_spread(...) makes the parts.';
+      END IF;
       FOR i IN 1 .. cardinality(statement.shards) LOOP
         one := 'wt_load_' || statement.shards[i];
         IF NOT one = ANY (coalesce(dblink_get_connections(), '{}')) THEN
@@ -185,6 +190,7 @@ CREATE FUNCTION wt_ask_parts(parent regclass, query text, OUT part text, OUT sha
   LANGUAGE plpgsql AS $$
   DECLARE
     asked record;
+    shards text[];
   BEGIN
     FOR asked IN
         SELECT p.shard, string_agg(format('SELECT %L::text, to_jsonb(q) FROM (%s) q', c.relname,
@@ -192,8 +198,9 @@ CREATE FUNCTION wt_ask_parts(parent regclass, query text, OUT part text, OUT sha
         FROM @extschema@.wt_parts p JOIN pg_class c ON c.oid = p.part WHERE p.parent = wt_ask_parts.parent GROUP BY 1 LOOP
       PERFORM dblink_connect('wt_ask_' || asked.shard, asked.shard);
       PERFORM dblink_send_query('wt_ask_' || asked.shard, asked.text);
+      shards := shards || asked.shard;
     END LOOP;
-    FOR wt_ask_parts.shard IN SELECT DISTINCT p.shard FROM @extschema@.wt_parts p WHERE p.parent = wt_ask_parts.parent ORDER BY 1 LOOP
+    FOR wt_ask_parts.shard IN SELECT s FROM unnest(shards) AS s ORDER BY 1 LOOP
       FOR wt_ask_parts.part, wt_ask_parts.answer IN
           SELECT t.part, t.answer FROM dblink_get_result('wt_ask_' || wt_ask_parts.shard) AS t(part text, answer jsonb) LOOP
         RETURN NEXT;

@@ -45,8 +45,9 @@ constexpr std::uint64_t kLingerBytes = 64ULL << 20;
 constexpr std::size_t kUnbudgeted = 64 * 1024;  // bytes of a body that no budget limits
 constexpr std::size_t kSinkBytes = 256 * 1024;  // that a sink gets at once
 constexpr std::size_t kDiskThreads = 2;
-// A read that has waited so long for a thread is refused: those before it hang, and it would too.
-constexpr std::chrono::seconds kLongestReadWait{2};
+// A read that waits for a thread is refused when no read was answered for so long: those before it
+// hang, and it would too.
+constexpr std::chrono::seconds kLongestReadSilence{2};
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -317,11 +318,15 @@ awaitable<Response> Session::run(Lane lane, const std::function<Response()>& mak
                            is_limited ? options_.works_per_address : 0);
   if (!share.is_granted()) co_return too_many("this address has too many requests in work");
   const Clock::time_point begin = Clock::now();
-  auto work = [&make, &cancel, lane, begin]() -> awaitable<Response> {
+  auto work = [&make, &cancel, &threads, lane, begin]() -> awaitable<Response> {
     if (lane == Lane::computing) step_back();
-    const bool is_late = lane == Lane::reading && Clock::now() - begin > kLongestReadWait;
-    if (is_late || cancel()) co_return busy("the request waited too long");
-    co_return made_guarded(make);
+    const Clock::time_point silent_since = std::max(begin, threads.last_answer.load());
+    const bool is_stuck =
+        lane == Lane::reading && Clock::now() - silent_since > kLongestReadSilence;
+    if (is_stuck || cancel()) co_return busy("the request waited too long");
+    Response response = made_guarded(make);
+    if (response.status < 500) threads.last_answer = Clock::now();
+    co_return response;
   };
   co_return co_await asio::co_spawn(threads.threads.get_executor(), std::move(work), use_awaitable);
 }

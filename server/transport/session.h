@@ -30,6 +30,7 @@ struct LaneThreads {
       : threads(std::max<std::size_t>(count, 1)), places(queue + count) {}
   boost::asio::thread_pool threads;
   Budget places;
+  std::atomic<std::chrono::steady_clock::time_point> last_answer{};  // of a status below 500
 };
 
 /// How many things of a kind each client's address has. Only for the I/O thread.

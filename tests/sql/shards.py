@@ -89,6 +89,8 @@ def test_refusals(coordinator, servers):
             ("no part", "CALL wt_move_part('pg_class', 'east')", "is not a part")):
         done = coordinator.psql(statement, check=False)
         expect(what, part in done.stderr, True)
+    done = coordinator.psql("CREATE TABLE bare (id text) PARTITION BY HASH (id)", "SELECT wt_load('bare', $$SELECT 'a' AS id$$)", check=False)
+    expect("a row without a part", "a row belongs to no part of bare" in done.stderr, True)
     servers["east"].ask("CREATE DATABASE plain")
     done = coordinator.psql(f"SELECT wt_add_shard('plain', '{servers['east'].folder}', 5432, 'plain', 'watertight')", check=False)
     expect("a shard without the extension", "has version none" in done.stderr, True)
@@ -150,6 +152,12 @@ def test_moves(coordinator, servers):
     expect("shards of the parts", coordinator.ask("SELECT string_agg(shard, ' ' ORDER BY remainder) FROM wt_parts WHERE parent = 'city'::regclass"),
            "north north east west east west")
     expect("the old part is gone", servers["east"].ask("SELECT to_regclass('city_0') IS NULL"), "t")
+    # A statement that began before a move sees the part where it was, not a table without it.
+    here = f"host={coordinator.folder} dbname=postgres user=watertight"
+    seen = coordinator.ask("BEGIN ISOLATION LEVEL REPEATABLE READ", "SELECT shard FROM wt_parts WHERE part::text = 'city_3'",
+                           f"SELECT dblink_exec('{here}', $$CALL wt_move_part('city_3', 'north')$$)",
+                           "SELECT count(*) FROM wt_parts WHERE parent = 'city'::regclass", "COMMIT")
+    expect("parts during a move", seen.split(), ["west", "CALL", "6"])
     # A move that was broken off after its copy is made again: nothing is there twice.
     servers["north"].ask("CREATE TABLE city_2 (id text)")
     coordinator.ask("CALL wt_move_part('city_2', 'north')")

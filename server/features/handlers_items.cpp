@@ -19,7 +19,7 @@
 namespace watertight::server {
 namespace {
 
-constexpr std::size_t kFewFeatures = 20;                     // that take a moment to decode
+constexpr std::ptrdiff_t kFewFeatures = 20;                  // that take a moment to decode
 constexpr std::size_t kLongestPage = std::size_t{32} << 20;  // bytes; a page ends after them
 
 /// How much of an extent in x and y a box covers, 0 to 1.
@@ -223,7 +223,7 @@ Result<std::optional<std::string>> text_of(const PageWork& work,
   return std::optional(*std::move(text));
 }
 
-Response page_in_lane(const std::shared_ptr<const PageWork>& work, Lane lane);
+Response page_in_lane(const std::shared_ptr<const PageWork>& work, Lane lane, std::string key = {});
 
 /// Writes the page, or leaves it to another lane when a large feature is on it.
 Response written_page(const std::shared_ptr<const PageWork>& work, Lane lane,
@@ -251,10 +251,10 @@ Response written_page(const std::shared_ptr<const PageWork>& work, Lane lane,
   return page_response(*work, page_head(*work, next, returned), features);
 }
 
-Response page_in_lane(const std::shared_ptr<const PageWork>& work, Lane lane) {
+Response page_in_lane(const std::shared_ptr<const PageWork>& work, Lane lane, std::string key) {
   Response response;
   response.further = std::make_shared<const FurtherWork>(
-      FurtherWork{lane, {}, [work, lane](const CancelPoll& is_unwanted) {
+      FurtherWork{lane, std::move(key), [work, lane](const CancelPoll& is_unwanted) {
                     return written_page(work, lane, is_unwanted);
                   }});
   return response;
@@ -263,13 +263,18 @@ Response page_in_lane(const std::shared_ptr<const PageWork>& work, Lane lane) {
 Response page_of(const std::shared_ptr<const PageWork>& work, const CancelPoll& is_cancelled) {
   if (work->type.is_summary) return summary_page(*work);
   const auto& features = work->page.features;
-  const auto missing = static_cast<std::size_t>(std::count_if(
-      features.begin(), features.end(),
-      [&](const store::FeatureSummary& feature) { return kept_text(*work, feature) == nullptr; }));
+  const auto is_missing = [&](const store::FeatureSummary& feature) {
+    return kept_text(*work, feature) == nullptr;
+  };
+  const auto first = std::find_if(features.begin(), features.end(), is_missing);
   // What the cache has may be gone a moment later, so this lane too leaves large features to
   // others.
-  if (missing == 0) return written_page(work, Lane::reading, is_cancelled);
-  return page_in_lane(work, missing <= kFewFeatures ? Lane::small : Lane::computing);
+  if (first == features.end()) return written_page(work, Lane::reading, is_cancelled);
+  const auto missing = std::count_if(first, features.end(), is_missing);
+  // Pages that begin to miss the same feature are written one after another: the first keeps it.
+  const bool is_kept = work->service.cache != nullptr;
+  return page_in_lane(work, missing <= kFewFeatures ? Lane::small : Lane::computing,
+                      is_kept ? work->key(*first) : std::string());
 }
 
 /// A list of features as a client wants it.

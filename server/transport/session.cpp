@@ -92,7 +92,8 @@ class TimeLimit {
   std::shared_ptr<State> state_;
 };
 
-/// The right to do the works of a key, which nobody else has meanwhile.
+/// The right to do the works of a key, which nobody else has meanwhile. Passes to the session that
+/// has waited longest.
 class KeyShare {
  public:
   KeyShare(SessionEnvironment& environment, std::string key,
@@ -105,8 +106,7 @@ class KeyShare {
   ~KeyShare() {
     const auto own = environment_.keys.find(key_);
     if (own == environment_.keys.end()) return;
-    own->second->cancel();
-    environment_.keys.erase(own);
+    if (own->second->cancel_one() == 0) environment_.keys.erase(own);
   }
   KeyShare(const KeyShare&) = delete;
   KeyShare& operator=(const KeyShare&) = delete;
@@ -335,12 +335,11 @@ awaitable<Response> Session::run(Lane lane, const std::function<Response()>& mak
 awaitable<Response> Session::finish(const std::shared_ptr<const FurtherWork>& first,
                                     const CancelPoll& cancel) {
   std::shared_ptr<const FurtherWork> work = first;
-  for (;;) {
-    const auto other = environment_.keys.find(work->key);
-    if (other == environment_.keys.end()) break;
-    const auto timer = other->second;
+  const auto other = environment_.keys.find(work->key);
+  if (other != environment_.keys.end()) {
+    const auto turn = other->second;
     error_code ignored;
-    co_await timer->async_wait(redirect_error(use_awaitable, ignored));
+    co_await turn->async_wait(redirect_error(use_awaitable, ignored));
   }
   const KeyShare key(environment_, work->key, stream_.get_executor());
   for (;;) {

@@ -116,7 +116,8 @@ struct SessionEnvironment {
   std::list<std::shared_ptr<Connection>> connections;  // those of the sessions
   AddressCounts connections_of;
   AddressCounts works_of;
-  /// The keys of the works that are being done, each with a timer that is cancelled at its end.
+  /// The keys of the works that are being done, each with the timer on which the sessions wait that
+  /// are next.
   std::unordered_map<std::string, std::shared_ptr<boost::asio::steady_timer>> keys;
 };
 

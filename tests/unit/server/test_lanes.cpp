@@ -20,7 +20,8 @@ std::string get(const std::string& target) {
 }
 
 /// A server whose targets name lanes: "/computing", "/small", "/reading", "/quick". Each answers
-/// after `release`. "/steps" answers by further work under the key "a", and "/steps/b" under "b".
+/// after `release`, as does "/failing" with 500; "/slow" after 0.6 s. "/steps" answers by further
+/// work under the key "a", and "/steps/b" under "b".
 struct LaneServer {
   explicit LaneServer(server::ServerOptions options = {}) {
     options.port = 0;
@@ -44,7 +45,12 @@ struct LaneServer {
                                 [this](const CancelPoll&) { return step(); }});
         return response;
       }
+      if (request.target == "/slow") {
+        std::this_thread::sleep_for(std::chrono::milliseconds(600));
+        return response;
+      }
       while (!release && request.target != "/quick") std::this_thread::sleep_for(kTick);
+      if (request.target == "/failing") response.status = 500;
       return response;
     };
     auto started = server::HttpServer::start(options, application, [this](const std::string& line) {
@@ -121,6 +127,46 @@ TEST_CASE("works with one key are done one after another, and those of other key
   }
   CHECK(lanes.steps == 3);
   CHECK(lanes.most_at_once == 2);
+}
+
+TEST_CASE("requests that wait for the turn of their key take no place in a queue") {
+  server::ServerOptions options;
+  options.small_queue = 0;
+  LaneServer lanes(options);
+  std::vector<std::unique_ptr<Client>> clients;
+  for (int i = 0; i < 20; ++i) {
+    clients.push_back(std::make_unique<Client>(lanes.server->port()));
+    clients.back()->send(get("/steps"));
+  }
+  REQUIRE(LaneServer::comes_true([&] { return lanes.begun == 20 && lanes.steps == 1; }));
+  lanes.release = true;
+  for (const auto& client : clients) CHECK(client->receive_answer().ends_with("stepped"));
+  CHECK(lanes.steps == 20);
+  CHECK(lanes.most_at_once == 1);
+}
+
+TEST_CASE("a read that waits behind one that hangs and fails is refused") {
+  LaneServer lanes;
+  const Client hanging(lanes.server->port());
+  hanging.send(get("/failing"));
+  REQUIRE(LaneServer::comes_true([&] { return lanes.begun == 1; }));
+  const Client waiting(lanes.server->port());
+  waiting.send(get("/reading"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2200));
+  lanes.release = true;
+  CHECK(hanging.receive_answer().starts_with("HTTP/1.1 500"));
+  CHECK(waiting.receive_answer().starts_with("HTTP/1.1 503"));
+  CHECK(lanes.begun == 1);
+}
+
+TEST_CASE("reads that wait long behind many others are answered") {
+  LaneServer lanes;
+  std::vector<std::unique_ptr<Client>> clients;
+  for (int i = 0; i < 5; ++i) {
+    clients.push_back(std::make_unique<Client>(lanes.server->port()));
+    clients.back()->send(get("/slow"));
+  }
+  for (const auto& client : clients) CHECK(client->receive_answer().ends_with("done"));
 }
 
 TEST_CASE("an address has at most its share of connections, and gets it back") {

@@ -189,16 +189,21 @@ std::string names_of(std::span<const Format> formats) {
   return names;
 }
 
+Json place_json(const pipeline::NotedSolid& solid) {
+  Json json{{"feature", solid.feature}, {"object", solid.object_id}};
+  if (!solid.lod.empty()) json["lod"] = solid.lod;
+  json["geometry"] = solid.geometry;
+  json["solid"] = solid.ordinal;
+  return json;
+}
+
 /// What of a file is not proven: numbers, and each solid with its place and the codes of its
 /// errors.
 Json unproven_json(const pipeline::ContainerInfo& info) {
   Json list = Json::array();
-  for (const pipeline::UnprovenSolid& solid : info.unproven) {
-    Json json{{"feature", solid.feature}, {"object", solid.object_id}};
-    if (!solid.lod.empty()) json["lod"] = solid.lod;
-    json["geometry"] = solid.geometry;
-    json["solid"] = solid.ordinal;
-    const Json report = Json::parse(solid.report, nullptr, false);
+  for (const pipeline::NotedSolid& solid : info.unproven) {
+    Json json = place_json(solid);
+    const Json report = Json::parse(solid.note, nullptr, false);
     const bool has_codes = report.is_object() && report.contains("all_errors");
     json["errors"] = has_codes ? report["all_errors"] : Json::array();
     list.push_back(std::move(json));
@@ -208,13 +213,46 @@ Json unproven_json(const pipeline::ContainerInfo& info) {
           {"solids", std::move(list)}};
 }
 
+/// The solids of a file that were repaired: their number, and each with its place and repair.
+Json repaired_json(const pipeline::ContainerInfo& info) {
+  Json list = Json::array();
+  for (const pipeline::NotedSolid& solid : info.repaired) {
+    Json json = place_json(solid);
+    json["repair"] = Json::parse(solid.note, nullptr, false);
+    list.push_back(std::move(json));
+  }
+  return {{"count", info.repaired.size()}, {"solids", std::move(list)}};
+}
+
+/// The place of a solid as the start of a line.
+std::string place_text(const Json& solid) {
+  std::string text = "  " + printable(solid["object"].get<std::string>());
+  if (solid.contains("lod")) text += " LoD " + printable(solid["lod"].get<std::string>());
+  return text + " geometry " + solid["geometry"].dump() + " solid " + solid["solid"].dump() + ":";
+}
+
+/// Prints a line for each solid that was repaired, with what was done.
+void print_repaired(const Json& repaired) {
+  std::printf("%-20s %s\n", "repaired solids", repaired["count"].dump().c_str());
+  for (const Json& solid : repaired["solids"]) {
+    std::string line = place_text(solid);
+    const Json& repair = solid["repair"];
+    if (repair.is_object()) {
+      for (const Json& remedy : repair.value("remedies", Json::array())) {
+        line += ' ' + (remedy.is_string() ? printable(remedy.get<std::string>()) : remedy.dump());
+      }
+      line += ", " + repair.value("area_added", Json(0)).dump() + " m2 added, moved " +
+              repair.value("largest_move", Json(0)).dump() + " m at most";
+    }
+    std::puts(line.c_str());
+  }
+}
+
 /// Prints a line for each solid that is not proven, with the codes of its errors.
 void print_unproven(const Json& unproven) {
   std::printf("%-20s %s\n", "unproven solids", unproven["count"].dump().c_str());
   for (const Json& solid : unproven["solids"]) {
-    std::string line = "  " + printable(solid["object"].get<std::string>());
-    if (solid.contains("lod")) line += " LoD " + printable(solid["lod"].get<std::string>());
-    line += " geometry " + solid["geometry"].dump() + " solid " + solid["solid"].dump() + ":";
+    std::string line = place_text(solid);
     for (const Json& code : solid["errors"]) line += ' ' + code.dump();
     if (solid["errors"].empty()) line += " undecided";
     std::puts(line.c_str());
@@ -248,6 +286,7 @@ Result<Json> info_of_container(pipeline::ContainerFile& file, bool lists_blocks)
   json["solids"] = info->solids;
   for (const auto& [type, count] : info->other_geometries) json["otherGeometries"][type] = count;
   json["unproven"] = unproven_json(*info);
+  if (!info->repaired.empty()) json["repaired"] = repaired_json(*info);
   json["blocks"] = info->blocks.size();
   json["index"] = file.has_index();
   json["pages"] = info->pages;
@@ -539,11 +578,14 @@ Exit run(const InfoCommand& command) {
     return Exit::valid;
   }
   Json unproven = std::move((*json)["unproven"]);
+  Json repaired = json->contains("repaired") ? std::move((*json)["repaired"]) : Json();
   Json blocks = json->contains("blockList") ? std::move((*json)["blockList"]) : Json::array();
   json->erase("unproven");
+  json->erase("repaired");
   json->erase("blockList");
   print_info(*json, "");
   if (!unproven.is_null()) print_unproven(unproven);
+  if (!repaired.is_null()) print_repaired(repaired);
   if (!blocks.empty()) print_blocks(blocks);
   return Exit::valid;
 }

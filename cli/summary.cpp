@@ -66,6 +66,7 @@ void Summary::add(const Summary& part) {
   undecided_ += part.undecided_;
   has_tolerant_ = has_tolerant_ || part.has_tolerant_;
   valid_snapped_ += part.valid_snapped_;
+  repaired_ += part.repaired_;
   features_ += part.features_;
   invalid_features_ += part.invalid_features_;
   undecided_features_ += part.undecided_features_;
@@ -116,6 +117,8 @@ void Summary::add_feature(Verdict verdict, bool has_solids, bool has_surfaces) {
 }
 
 void Summary::add(const pipeline::FeatureOutcome& feature) {
+  repaired_ += static_cast<std::uint64_t>(
+      std::ranges::count_if(feature.repairs, &pipeline::SolidRepair::is_repaired));
   add_feature(feature.verdict, !feature.solids.empty(), false);
   for (const pipeline::SolidOutcome& solid : feature.solids) {
     add(solid.report);
@@ -244,6 +247,7 @@ std::string Summary::table(double seconds) const {
   for (const auto& [rung, count] : by_rung_) {
     text += row("    proven by " + std::string(delaunay::to_string(rung)), count);
   }
+  if (repaired_ > 0) text += row("    repaired", repaired_);
   text += row("  invalid", invalid_);
   for (const auto& [code, count] : by_code_) {
     text +=

@@ -87,6 +87,7 @@ class Summary {
   std::uint64_t plain_bytes_ = 0;  // the size of the encoded solids as plain arrays
   std::uint64_t blob_bytes_ = 0;
   bool has_tolerant_ = false;
+  std::uint64_t repaired_ = 0;            // solids that were repaired before they were judged
   std::uint64_t valid_snapped_ = 0;       // solids whose tolerant verdict is valid
   std::map<int, std::uint64_t> by_code_;  // invalid solids by error code; a solid may have several
   std::map<int, std::uint64_t> groups_by_code_;  // invalid composite solids and buildings

@@ -85,6 +85,8 @@ struct SubmittedSolid {
   /// Unused vertices of a file whose list of vertices is for this solid alone.
   geometry::UnusedVertices unused = {};
   bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
+  /// How the solid was repaired, as JSON (docs/report.md, "Repairs"); "" for one that came so.
+  std::string repair = {};
 };
 
 /// An instance of a geometry template. It is validated where its placement puts it, like a solid,

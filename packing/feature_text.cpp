@@ -12,17 +12,33 @@ constexpr char kHasMarks = '\x02';
 constexpr char kIdMark = '\x01';
 constexpr std::size_t kShortestId = 3;
 
+/// Takes a line about solids off the front of the text, without its line feed; "" without one.
+std::string_view take_line(std::string_view& text) {
+  constexpr std::array kStarts{kMergedLine,   kUnprovenLine, kRepairedLine,
+                               kMeasuresLine, kReportLine,   kFindingsLine};
+  const std::size_t end = text.find('\n');
+  const bool is_line =
+      std::ranges::any_of(kStarts, [&](auto start) { return text.starts_with(start); });
+  if (!is_line || end == std::string_view::npos) return {};
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end + 1);
+  return line;
+}
+
 }  // namespace
 
 std::string_view model_line(std::string_view text) {
-  constexpr std::array kStarts{kMergedLine, kUnprovenLine, kMeasuresLine, kReportLine,
-                               kFindingsLine};
-  while (std::ranges::any_of(kStarts, [&](auto start) { return text.starts_with(start); })) {
-    const std::size_t end = text.find('\n');
-    if (end == std::string_view::npos) return {};
-    text.remove_prefix(end + 1);
-  }
+  while (!take_line(text).empty()) continue;
   return text.starts_with('{') ? text.substr(0, text.find('\n')) : std::string_view();
+}
+
+std::string_view repair_of(std::string_view text, std::uint64_t solid) {
+  const std::string start = std::string(kRepairedLine) + std::to_string(solid) + ' ';
+  for (;;) {
+    const std::string_view line = take_line(text);
+    if (line.empty()) return {};
+    if (line.starts_with(start)) return line.substr(start.size());
+  }
 }
 
 std::string with_marks(const std::string& text, const std::string& id) {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "pipeline/stored/solid_lines.h"
 #include "store/rows/place.h"
 
 namespace watertight::pipeline {
@@ -25,18 +26,27 @@ struct Ordered {
   }
 };
 
-void list_unproven(const EncodedFeature& feature, ContainerInfo& info) {
+/// Lists the solids that are not proven, and those that were repaired. Errors: malformed.
+Status list_solids(const EncodedFeature& feature, ContainerInfo& info) {
   if (!feature.is_proven()) ++info.unproven_features;
-  for (const StoredSolid& solid : feature.solids) {
-    if (solid.is_proven) continue;
-    info.unproven.push_back(
-        {feature.id, solid.object_id, solid.lod, solid.geometry, solid.ordinal, solid.report});
+  std::string_view skeleton = feature.skeleton;
+  const auto lines = take_solid_lines(skeleton, feature.solids.size());
+  if (!lines) return lines.error();
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    const StoredSolid& solid = feature.solids[i];
+    const auto noted = [&](std::string_view note) {
+      return NotedSolid{feature.id,     solid.object_id, solid.lod,
+                        solid.geometry, solid.ordinal,   std::string(note)};
+    };
+    if (!solid.is_proven) info.unproven.push_back(noted(solid.report));
+    const std::string_view repair = (*lines)[i].repaired;
+    if (!repair.empty()) info.repaired.push_back(noted(repair));
   }
+  return Done{};
 }
 
-void count_feature(const ReadFeature& feature, ContainerInfo& info) {
+Status count_feature(const ReadFeature& feature, ContainerInfo& info) {
   info.solids += feature.encoded.solids.size();
-  list_unproven(feature.encoded, info);
   for (const auto& [type, count] : other_geometries(feature.encoded)) {
     info.other_geometries[type] += count;
   }
@@ -45,6 +55,7 @@ void count_feature(const ReadFeature& feature, ContainerInfo& info) {
       info.parts[part.name] += part.bytes;
     }
   }
+  return list_solids(feature.encoded, info);
 }
 
 }  // namespace
@@ -150,7 +161,9 @@ Result<ContainerInfo> describe_container(ContainerFile& file) {
     info.features += block->features.size();
     info.pages += block->pages;
     info.solid_bytes += block->solid_bytes;
-    for (const ReadFeature& feature : block->features) count_feature(feature, info);
+    for (const ReadFeature& feature : block->features) {
+      if (const Status counted = count_feature(feature, info); !counted) return counted.error();
+    }
   }
   return info;
 }

@@ -34,14 +34,14 @@ Result<std::vector<Document>> decode_container(ByteView bytes, const Limits& lim
 Result<std::vector<Document>> decode_container(ContainerFile& file, const Limits& limits = {},
                                                unsigned threads = 1);
 
-/// A solid that is not proven, and its place in the document.
-struct UnprovenSolid {
+/// A solid of which there is something to say, and its place in the document.
+struct NotedSolid {
   std::string feature;
   std::string object_id;
   std::string lod;
   std::uint32_t geometry = 0;
   std::uint32_t ordinal = 0;
-  std::string report;  // JSON
+  std::string note;  // JSON
 };
 
 /// The contents of a Watertight file, counted.
@@ -50,7 +50,8 @@ struct ContainerInfo {
   std::uint64_t features = 0;
   std::uint64_t solids = 0;
   std::uint64_t unproven_features = 0;  // the features among them that are not proven
-  std::vector<UnprovenSolid> unproven;  // the solids among them that are not proven
+  std::vector<NotedSolid> unproven;     // the solids among them that are not proven, with reports
+  std::vector<NotedSolid> repaired;     // the solids among them that were repaired, and how
   /// The geometries that are no solids, by type; city models only.
   std::map<std::string, std::uint64_t> other_geometries;
   std::uint64_t pages = 0;

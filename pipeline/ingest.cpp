@@ -181,6 +181,13 @@ Result<std::optional<EncodedFeature>> encode_rest(
   if (divided->geometries_left == 0) return std::optional<EncodedFeature>();
   auto rest = read_again(divided->rest, *shared.city, is_whole, options.surfaces);
   if (!rest) return std::move(rest).error();
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < feature.own && next < rest->solids.size(); ++i) {
+    const SubmittedSolid& submitted = feature.feature.solids[i];
+    if (!places.contains(place_of(submitted.source))) {
+      rest->solids[next++].repair = submitted.repair;
+    }
+  }
   const InspectedFeature inspected =
       inspect(*std::move(rest), workers, options.certify, options.groups, &templates);
   if (!is_proven_but_for_unreadable(inspected)) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "pipeline/stored/solid_lines.h"
 #include "repair/summary_json.h"
 #include "validate/report_json.h"
 
@@ -139,13 +140,17 @@ std::string proof_json(const EncodedFeature& feature) {
   JsonText json;
   json.open('{').key("id").value(feature.id).key("proven").value(feature.is_proven());
   json.key("solids").open('[');
-  for (const StoredSolid& solid : feature.solids) {
+  std::string_view skeleton = feature.skeleton;
+  const auto lines = take_solid_lines(skeleton, feature.solids.size());
+  for (std::size_t i = 0; i < feature.solids.size(); ++i) {
+    const StoredSolid& solid = feature.solids[i];
     json.open('{').key("object").value(solid.object_id);
     if (!solid.lod.empty()) json.key("lod").value(solid.lod);
     json.key("geometry").value(solid.geometry).key("ordinal").value(solid.ordinal);
     json.key("proven").value(solid.is_proven);
     if (!solid.measures.empty()) json.key("measures").raw(solid.measures);
     if (!solid.report.empty()) json.key("report").raw(solid.report);
+    if (lines && !(*lines)[i].repaired.empty()) json.key("repair").raw((*lines)[i].repaired);
     json.close('}');
   }
   json.close(']');

@@ -164,6 +164,10 @@ typedef struct wt_blob_view {
  * the id of the feature. */
 void wt_bridge_stored_model(const wt_job* job, wt_blob_view dictionary, const char* id,
                             wt_reply* reply) WATERTIGHT_NOEXCEPT;
+/** Answers the same with the repair of a solid of the feature as JSON (docs/report.md, "Repairs");
+ *  without bytes for a solid that was not repaired. */
+void wt_bridge_stored_repair(const wt_job* job, wt_blob_view dictionary, const char* id,
+                             uint32_t solid, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Blobs and the names of their solids, UTF-8. */
 typedef struct wt_named_blobs {
   const wt_blob_view* blobs;

@@ -501,6 +501,10 @@ CREATE FUNCTION wt_stored_model(packed bytea, dictionary bytea, id text) RETURNS
   AS 'MODULE_PATHNAME', 'wt_solid_stored_model' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 200;
 COMMENT ON FUNCTION wt_stored_model(bytea, bytea, text) IS
   'city model, without its coordinates, of the text of a feature that the service has stored; for the view watertight.city';
+CREATE FUNCTION wt_stored_repair(packed bytea, dictionary bytea, id text, "position" int) RETURNS jsonb
+  AS 'MODULE_PATHNAME', 'wt_solid_stored_repair' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 200;
+COMMENT ON FUNCTION wt_stored_repair(bytea, bytea, text, int) IS
+  'how a solid of a feature that the service has stored was repaired; NULL for one that came so; for the view watertight.city';
 CREATE FUNCTION wt_stored_semantics(geometry jsonb, ordinal bigint) RETURNS jsonb
   LANGUAGE sql IMMUTABLE STRICT PARALLEL SAFE COST 200
   RETURN (
@@ -528,7 +532,7 @@ CREATE FUNCTION wt_make_city_view() RETURNS void LANGUAGE plpgsql SET client_min
       CREATE VIEW watertight.city AS
         SELECT c.name AS collection, f.id AS feature, f.version, s.object_id AS object,
                m.model #>> ARRAY['CityObjects', s.object_id, 'type'] AS type, s.lod, s.geometry AS geometry_number, s.ordinal,
-               s.is_proven,
+               s.is_proven, %1$s.wt_stored_repair(f.packed_text, coalesce(d.content, ''), f.id, s."position") AS repair,
                coalesce(m.model #> ARRAY['CityObjects', f.id, 'attributes'], '{}')
                  || coalesce(m.model #> ARRAY['CityObjects', s.object_id, 'attributes'], '{}') AS attributes,
                %1$s.wt_stored_semantics(m.model #> ARRAY['CityObjects', s.object_id, 'geometry', s.geometry::text], s.ordinal) AS semantics,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formats/document.h"
+#include "packing/feature_text.h"
 
 namespace watertight::pipeline {
 namespace {
@@ -124,7 +125,8 @@ struct SkeletonParts {
 
 SkeletonParts parts_of(std::string_view text) {
   SkeletonParts parts;
-  while (text.starts_with("unproven ") || text.starts_with("merged ")) {
+  while (std::ranges::any_of(packing::kSolidLines,
+                             [&](std::string_view start) { return text.starts_with(start); })) {
     const std::size_t size = std::min(text.find('\n'), text.size() - 1) + 1;
     parts.lines.push_back(text.substr(0, size));
     text.remove_prefix(size);

@@ -7,6 +7,7 @@
 
 #include "formats/city_json/city_json.h"
 #include "geometry/parallel.h"
+#include "repair/summary_json.h"
 
 namespace watertight::pipeline {
 namespace {
@@ -29,6 +30,7 @@ std::optional<Repaired> repaired(const SubmittedSolid& submitted, delaunay::Engi
 Status apply(Feature& feature, std::span<const std::optional<Repaired>> results,
              std::vector<SolidRepair>& repairs) {
   std::vector<formats::SolidEdit> edits;
+  std::vector<std::pair<std::size_t, std::string>> texts;
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!results[i]) continue;
     const SubmittedSolid& submitted = feature.solids[i];
@@ -38,9 +40,14 @@ Status apply(Feature& feature, std::span<const std::optional<Repaired>> results,
     auto solid = repair::on_submitted_vertices(submitted.solid, *results[i]->edits);
     if (!solid) return std::move(solid).error();
     edits.push_back({i, std::move(solid->solid), std::move(solid->facet_source)});
+    texts.emplace_back(i, repair::summary_json(repairs.back().summary));
   }
   if (edits.empty()) return Done{};
-  return formats::replace_solids(feature, std::move(edits));
+  if (const Status replaced = formats::replace_solids(feature, std::move(edits)); !replaced) {
+    return replaced;
+  }
+  for (const auto& [solid, text] : texts) feature.solids[solid].repair = text;
+  return Done{};
 }
 
 }  // namespace

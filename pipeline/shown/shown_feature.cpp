@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/shown/shown_feature.h"
 
+#include <algorithm>
+
 #include "base/json_text.h"
 #include "formats/city_json/city_json.h"
 
@@ -48,6 +50,11 @@ Result<ShownFeature> ShownFeatureReader::read(StoredFeature stored) {
   ShownFeature shown{stored.id, stored.type, stored.srid, {}, own_properties(stored)};
   auto document = from_stored(std::move(stored), limits_);
   if (!document) return damaged(document.error());
+  const auto repaired =
+      std::ranges::count_if(document->features.front().solids,
+                            [](const SubmittedSolid& solid) { return !solid.repair.empty(); });
+  shown.properties.emplace_back(std::string(kOwnProperty) + "repaired_solids",
+                                std::to_string(repaired));
   const bool is_city =
       document->format == Format::city_json || document->format == Format::city_json_seq;
   if (!is_city && document->format != Format::gml) {

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/stored/solid_lines.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "packing/feature_text.h"
 
 namespace watertight::pipeline {
-
-using packing::kMergedLine;
-using packing::kUnprovenLine;
 
 Result<std::pair<std::size_t, std::string_view>> take_line(std::string_view& skeleton,
                                                            std::string_view start,
@@ -28,12 +26,15 @@ Result<std::pair<std::size_t, std::string_view>> take_line(std::string_view& ske
 Result<std::vector<SolidLines>> take_solid_lines(std::string_view& skeleton, std::size_t solids) {
   std::vector<SolidLines> lines(solids);
   for (;;) {
-    const bool is_unproven = skeleton.starts_with(kUnprovenLine);
-    if (!is_unproven && !skeleton.starts_with(kMergedLine)) return lines;
-    const auto line = take_line(skeleton, is_unproven ? kUnprovenLine : kMergedLine, solids);
+    const auto start = std::ranges::find_if(
+        packing::kSolidLines, [&](std::string_view one) { return skeleton.starts_with(one); });
+    if (start == packing::kSolidLines.end()) return lines;
+    const auto line = take_line(skeleton, *start, solids);
     if (!line) return line.error();
     SolidLines& of_solid = lines[line->first];
-    (is_unproven ? of_solid.unproven : of_solid.merged) = line->second;
+    if (*start == packing::kUnprovenLine) of_solid.unproven = line->second;
+    if (*start == packing::kMergedLine) of_solid.merged = line->second;
+    if (*start == packing::kRepairedLine) of_solid.repaired = line->second;
   }
 }
 

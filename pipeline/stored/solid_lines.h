@@ -18,10 +18,12 @@ Result<std::pair<std::size_t, std::string_view>> take_line(std::string_view& ske
                                                            std::string_view start,
                                                            std::size_t solids);
 
-/// The lines in front of a stored skeleton: for each solid one of the two texts, or none.
+/// The lines in front of a stored skeleton: for each solid `unproven`, `merged` or none of the two,
+/// and `repaired` or not.
 struct SolidLines {
   std::string_view unproven;
   std::string_view merged;
+  std::string_view repaired;
 };
 
 /// Takes the lines of solids off the front of a stored skeleton. Errors: malformed.

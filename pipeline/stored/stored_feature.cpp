@@ -114,6 +114,8 @@ Result<EncodedFeature> encode_feature(const InspectedFeature& feature, const Doc
     const InspectedSolid& inspected = feature.solids[i];
     const Solid& submitted = feature.feature.solids[i].solid;
     StoredSolid& stored = encoded.solids.emplace_back(described(inspected, submitted));
+    const std::string& repair = feature.feature.solids[i].repair;
+    if (!repair.empty()) encoded.skeleton += line_of(packing::kRepairedLine, i, repair);
     if (!stored.is_proven) {
       include(encoded.box, submitted);
       encoded.skeleton += line_of(packing::kUnprovenLine, i, write_unproven(submitted));
@@ -191,6 +193,7 @@ Result<Document> decode_feature(const EncodedFeature& encoded, std::vector<Solid
                                  : read_unproven((*lines)[i].unproven, limits);
     if (!whole) return std::move(whole).error();
     feature.solids.push_back(SubmittedSolid{*std::move(whole), std::move(source), {}});
+    feature.solids.back().repair = (*lines)[i].repaired;
   }
   Document document;
   document.format = *format;

@@ -73,6 +73,8 @@ void add_own(Json& schema) {
   add("proven", "whether all solids are proven", "boolean");
   add("solids", "the number of solids", "integer");
   add("unproven_solids", "the number of solids that are not proven", "integer");
+  add("repaired_solids", "the number of solids that were repaired before they were stored",
+      "integer");
   add("version", "the version of the feature", "integer");
   add("no_geometry", "why there is no geometry", "string");
 }

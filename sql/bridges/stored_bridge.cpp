@@ -3,7 +3,9 @@
 // The function of the bridge that reads texts of features in the tables of the service.
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "packing/feature_text.h"
@@ -35,7 +37,10 @@ Result<DictionaryPointer> dictionary_of(ByteView content) {
   return known.front();
 }
 
-void stored_model_into(const wt_job& job, ByteView dictionary, const char* id, wt_reply* reply) {
+/// Answers a packed text with a part of it, or without bytes where it has none.
+void stored_part_into(const wt_job& job, ByteView dictionary, const char* id,
+                      const std::function<std::string_view(std::string_view)>& part,
+                      wt_reply* reply) {
   const CallLimits call(job);
   const Limits limits = call.of_input();
   const auto known = dictionary_of(dictionary);
@@ -44,9 +49,9 @@ void stored_model_into(const wt_job& job, ByteView dictionary, const char* id, w
   if (!marked) return fail(reply, call.of_reading(marked.error()));
   const auto text = packing::without_marks(*marked, id, limits.bytes);
   if (!text) return fail(reply, call.of_reading(text.error()));
-  const std::string_view model = packing::model_line(*text);
+  const std::string_view found = part(*text);
   if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
-  if (!model.empty()) answer(reply, as_bytes(model));
+  if (!found.empty()) answer(reply, as_bytes(found));
 }
 
 }  // namespace
@@ -55,6 +60,16 @@ void stored_model_into(const wt_job& job, ByteView dictionary, const char* id, w
 void wt_bridge_stored_model(const wt_job* job, wt_blob_view dictionary, const char* id,
                             wt_reply* reply) noexcept {
   watertight::sql::guarded(reply, [=] {
-    watertight::sql::stored_model_into(*job, {dictionary.bytes, dictionary.size}, id, reply);
+    watertight::sql::stored_part_into(*job, {dictionary.bytes, dictionary.size}, id,
+                                      watertight::packing::model_line, reply);
+  });
+}
+
+void wt_bridge_stored_repair(const wt_job* job, wt_blob_view dictionary, const char* id,
+                             uint32_t solid, wt_reply* reply) noexcept {
+  watertight::sql::guarded(reply, [=] {
+    watertight::sql::stored_part_into(
+        *job, {dictionary.bytes, dictionary.size}, id,
+        [=](std::string_view text) { return watertight::packing::repair_of(text, solid); }, reply);
   });
 }

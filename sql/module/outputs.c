@@ -207,6 +207,24 @@ wt_solid_stored_model(PG_FUNCTION_ARGS)
 	PG_RETURN_DATUM(jsonb_of(reply));
 }
 
+/* How the service has repaired a solid of a stored feature. */
+PG_FUNCTION_INFO_V1(wt_solid_stored_repair);
+Datum
+wt_solid_stored_repair(PG_FUNCTION_ARGS)
+{
+	wt_reply   *reply = new_reply();
+	bytea	   *packed = PG_GETARG_BYTEA_PP(0);
+	bytea	   *dictionary = PG_GETARG_BYTEA_PP(1);
+	wt_blob_view content = {(const uint8_t *) VARDATA_ANY(dictionary), VARSIZE_ANY_EXHDR(dictionary)};
+	wt_job		job = new_job((const uint8_t *) VARDATA_ANY(packed), VARSIZE_ANY_EXHDR(packed), NULL, false);
+
+	wt_bridge_stored_repair(&job, content, name_of(PG_GETARG_DATUM(2)), (uint32_t) PG_GETARG_INT32(3), reply);
+	check_reply(reply);
+	if (reply->size == 0)
+		PG_RETURN_NULL();
+	PG_RETURN_DATUM(jsonb_of(reply));
+}
+
 /* The tetrahedra of a solid, as rows. */
 PG_FUNCTION_INFO_V1(wt_solid_tetrahedra);
 Datum

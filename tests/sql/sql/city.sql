@@ -14,3 +14,5 @@ SELECT wt_stored_model('\x00', '', 'a');
 SELECT wt_stored_model('\xffffffffffffffff', '', 'a');
 SELECT wt_stored_model('\x0102030405060708090a', '\x0102', 'a');
 SELECT wt_stored_model(NULL, '', 'a') IS NULL;
+SELECT wt_stored_repair('\x0102030405060708090a', '\x0102', 'a', 0);
+SELECT wt_stored_repair(NULL, '', 'a', 0) IS NULL;

@@ -15,6 +15,16 @@ TEST_CASE("the city model of a text stands behind the lines about its solids") {
   CHECK(model_line("measures 0 x\nv 1 2 3\n{}").empty());
 }
 
+TEST_CASE("a text says how a solid was repaired") {
+  const std::string_view text = "report 0 y\nunproven 0 u\nmerged 1 m\nrepaired 1 {\"a\":1}\n{}";
+  CHECK(repair_of(text, 1) == "{\"a\":1}");
+  CHECK(repair_of(text, 0).empty());
+  CHECK(repair_of(text, 11).empty());
+  CHECK(repair_of("{}\nrepaired 0 {}\n", 0).empty());
+  CHECK(repair_of("repaired 0 {}", 0).empty());
+  CHECK(model_line(text) == "{}");
+}
+
 TEST_CASE("a text comes back from its marks") {
   for (const std::string text :
        {"", "{}", "id12 and id12", "\x02 of its own id12", "\x01 of its own id12", "id1"}) {

@@ -5,6 +5,8 @@
 
 #include "pipeline/container.h"
 #include "pipeline/export.h"
+#include "pipeline/outcome_json.h"
+#include "pipeline/repaired/repair_document.h"
 #include "pipeline/stored/unproven_solid.h"
 #include "pipeline/streaming/ingestion.h"
 #include "tests/unit/pipeline/samples.h"
@@ -129,12 +131,38 @@ TEST_CASE("a file keeps solids that are not proven with their findings, and its 
   CHECK(info->unproven_features == 1);
   REQUIRE(info->unproven.size() == 1);
   CHECK(info->unproven.front().object_id == "open");
-  CHECK(info->unproven.front().report == R"({"all_errors":[302]})");
+  CHECK(info->unproven.front().note == R"({"all_errors":[302]})");
   const auto documents = pipeline::decode_container(*file);
   REQUIRE(documents);
   const auto text = formats::write_document(documents->front(), Format::city_json_seq);
   REQUIRE(text);
   CHECK(as_text(*text) == kMixed);
+}
+
+TEST_CASE("a repaired solid says how it was repaired, in files and in stored features") {
+  Document document = document_of(kMixed);
+  repair::RepairOptions options;
+  options.remedies = *repair::remedies_of("all");
+  REQUIRE(pipeline::repair_document(document, nullptr, options, 1));
+  CHECK(document.features[0].solids[0].repair.empty());
+  const std::string repair = document.features[1].solids[0].repair;
+  CHECK(repair.starts_with(R"({"outcome":"repaired","remedies":["fill"],"codes_before":[302],)"));
+  auto encoded = pipeline::encode_document(std::move(document), nullptr, keeping());
+  REQUIRE(encoded);
+  CHECK(encoded->outcome.unproven == 0);
+  const pipeline::EncodedFeature& feature = encoded->document.features[1];
+  CHECK(pipeline::proof_json(feature).find(R"("repair":)" + repair) != std::string::npos);
+
+  const auto file = pipeline::write_container(encoded->document);
+  REQUIRE(file);
+  const auto info = pipeline::describe_container(*file);
+  REQUIRE(info);
+  REQUIRE(info->repaired.size() == 1);
+  CHECK(info->repaired.front().feature == "open");
+  CHECK(info->repaired.front().note == repair);
+  const auto documents = pipeline::decode_container(*file);
+  REQUIRE(documents);
+  CHECK(documents->front().features[1].solids[0].repair == repair);
 }
 
 TEST_CASE("a collection takes the policy of the write that makes it, and later writes follow it") {

@@ -116,6 +116,10 @@ TEST_CASE_METHOD(ConversionRoutes,
   CHECK(first["repairs"][0]["repair"]["area_added"] == 80.0);
   const auto item = get("/collections/mended/items/open-box");
   REQUIRE(item.status == 200);
+  const Json proof = Json::parse(get("/collections/mended/items/open-box?f=proof").body);
+  CHECK(proof["solids"][0]["repair"] == first["repairs"][0]["repair"]);
+  const Json shown = Json::parse(get("/collections/mended/items/open-box?f=geojson").body);
+  CHECK(shown["properties"]["wt_repaired_solids"] == 1);
   const auto judged = send_body("/validate", test::whole(item));
   CHECK(Json::parse(test::whole(judged))["validity"] == true);
   for (const char* query : {"weld=0.1", "islands=2", "repair=glue", "repair=all&weld=-1"}) {

@@ -226,7 +226,8 @@ Json repaired_json(const pipeline::ContainerInfo& info) {
 
 /// The place of a solid as the start of a line.
 std::string place_text(const Json& solid) {
-  std::string text = "  " + printable(solid["object"].get<std::string>());
+  const char* const name = solid["object"] == "" ? "feature" : "object";
+  std::string text = "  " + printable(solid[name].get<std::string>());
   if (solid.contains("lod")) text += " LoD " + printable(solid["lod"].get<std::string>());
   return text + " geometry " + solid["geometry"].dump() + " solid " + solid["solid"].dump() + ":";
 }

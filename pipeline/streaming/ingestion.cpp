@@ -74,10 +74,11 @@ Status Ingestion::look_up_collection() {
 Status Ingestion::add(formats::FeatureReader& reader) {
   if (Status found = look_up_collection(); !found) return found;
   const Format format = reader.document().format;
-  if (options_.repair && format != Format::city_json && format != Format::city_json_seq) {
-    return Error{ErrorCode::unsupported,
-                 "only city models (CityJSON, CityJSONSeq) are repaired while they are stored; "
-                 "`watertight repair` and POST /repair make one of a document of another format"};
+  if (options_.repair && format == Format::gml) {
+    return Error{
+        ErrorCode::unsupported,
+        "GML is not repaired while it is stored; `watertight repair` and POST /repair make "
+        "a city model of it that is"};
   }
   auto shared = shared_part(reader.document(), options_.contract);
   if (!shared) return std::move(shared).error();

@@ -262,6 +262,33 @@ TEST_CASE("a collection of several documents comes back from its export") {
   }
 }
 
+TEST_CASE("solids of a document without a city model are stored repaired") {
+  const std::string text =
+      "o box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+      "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  auto document = formats::read_document(as_bytes(text), Format::obj, {});
+  REQUIRE(document);
+  samples::MemoryStore store;
+  pipeline::IngestOptions options = into("boxes");
+  options.repair.emplace().remedies = *repair::remedies_of("fill");
+  pipeline::Ingestion ingestion(store, nullptr, options,
+                                [](pipeline::FeatureOutcome&&) -> Status { return Done{}; });
+  auto reader = formats::FeatureReader::of(*std::move(document));
+  REQUIRE(ingestion.add(reader));
+  const auto counts = ingestion.finish();
+  REQUIRE(counts);
+  CHECK(counts->stored == 1);
+  const auto stored = store.get("boxes", "box");
+  REQUIRE(stored);
+  const auto back = pipeline::from_stored(*stored);
+  REQUIRE(back);
+  CHECK(back->features.front().solids.front().solid.facet_count() == 6);
+  CHECK(back->features.front().solids.front().repair.starts_with(R"({"outcome":"repaired",)"));
+  const auto written = formats::write_document(*back, Format::obj);
+  REQUIRE(written);
+  CHECK(as_text(*written).starts_with("o box\nv 0 0 0\n"));
+}
+
 TEST_CASE("nothing of a damaged Watertight file is stored") {
   samples::MemoryStore store;
   REQUIRE(ingest_text(samples::sequence(boxes(3)), store, into("town")));

@@ -57,8 +57,10 @@ class Passages {
   std::set<Edge> repeated_;
 };
 
-/// Cuts a closed walk into simple loops where it passes a vertex again.
-void cut_into_simple(const Ring& walk, std::vector<Ring>& loops) {
+}  // namespace
+
+std::vector<Ring> simple_loops_of(const Ring& walk) {
+  std::vector<Ring> loops;
   Ring open;
   std::map<Index, std::size_t> place;
   for (const Index vertex : walk) {
@@ -73,9 +75,8 @@ void cut_into_simple(const Ring& walk, std::vector<Ring>& loops) {
     open.push_back(vertex);
   }
   if (!open.empty()) loops.push_back(std::move(open));
+  return loops;
 }
-
-}  // namespace
 
 BorderLoops border_loops(std::span<const EditedFacet> facets) {
   const Passages passages(facets);
@@ -102,7 +103,7 @@ BorderLoops border_loops(std::span<const EditedFacet> facets) {
       result.left_over += walk.size();
       continue;
     }
-    cut_into_simple(walk, result.loops);
+    for (Ring& loop : simple_loops_of(walk)) result.loops.push_back(std::move(loop));
   }
   result.left_over += open.size() - next.size();
   for (Ring& loop : result.loops) {

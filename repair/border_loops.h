@@ -23,4 +23,8 @@ struct BorderLoops {
 /// such edges meet in a vertex, the loops follow the fans of facets around it. Cost: O(n log n).
 BorderLoops border_loops(std::span<const EditedFacet> facets);
 
+/// Cuts a closed walk where it passes a vertex again: loops that pass each vertex once. Cost:
+/// O(n log n).
+std::vector<Ring> simple_loops_of(const Ring& walk);
+
 }  // namespace watertight::repair

@@ -29,11 +29,11 @@ std::vector<Ring> triangles_in_plan(const EditedSolid& solid, const EditedFacet&
   return result;
 }
 
-bool is_planar(const EditedSolid& solid, const HoleLoops& group, const Tolerances& tolerances) {
-  const auto units = metres_per_unit(solid);
+bool is_planar(const EditedSolid& solid, const ShellSurface& surface, const HoleLoops& group,
+               const Tolerances& tolerances) {
   std::vector<std::array<double, 3>> places;
   for (const Ring& loop : group) {
-    for (const Index vertex : loop) places.push_back(metres_of(solid, vertex, units));
+    for (const Index vertex : loop) places.push_back(metres_of(solid, vertex, surface.units()));
   }
   const double limit = tolerances.planarity_metres;
   return geometry::distance_to_fitted_plane(places, limit).distance <= limit;
@@ -54,10 +54,9 @@ bool is_small(const HoleFill& fill) {
 fill::FillOptions optimum_options(const EditedSolid& solid, const ShellSurface& surface,
                                   const HoleLoops& loops, const CancelPoll& poll) {
   fill::FillOptions options;
-  const auto units = metres_per_unit(solid);
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<std::size_t>(axis);
-    options.metres_per_unit[at] = units[at] * solid.lattice.scale(axis);
+    options.metres_per_unit[at] = surface.units()[at] * solid.lattice.scale(axis);
   }
   for (const Ring& loop : loops) {
     auto& behind = options.behind.emplace_back();
@@ -99,7 +98,7 @@ HoleFill fill_hole(const EditedSolid& solid, const ShellSurface& surface, HoleLo
   for (const Ring& loop : loops) fill.vertices += loop.size();
   EditedFacet facet{std::move(loops), kNone};
   std::vector<Ring> in_plan = triangles_in_plan(solid, facet);
-  if (!in_plan.empty() && is_planar(solid, facet.rings, options.tolerances)) {
+  if (!in_plan.empty() && is_planar(solid, surface, facet.rings, options.tolerances)) {
     fill.method = "facet";
     fill.facets = 1;
     facets.push_back(std::move(facet));
@@ -139,6 +138,7 @@ std::vector<HoleFill> fill_holes(EditedSolid& solid, const FillHolesOptions& opt
   for (std::size_t shell = 0; shell < solid.shells.size(); ++shell) {
     BorderLoops borders = border_loops(solid.shells[shell]);
     for (HoleLoops& loops : group_loops(solid, std::move(borders.loops))) {
+      if (options.is_cancelled && options.is_cancelled()) break;
       HoleFill fill = fill_hole(solid, surface, std::move(loops), options, added[shell]);
       fill.shell = static_cast<Index>(shell);
       fills.push_back(std::move(fill));

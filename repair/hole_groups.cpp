@@ -2,18 +2,16 @@
 #include "repair/hole_groups.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "geometry/predicates/predicates.h"
 #include "geometry/vector3.h"
 #include "repair/turn.h"
-#include "tessellate/facets.h"
+#include "validate/overlap/box_tree.h"
 
 namespace watertight::repair {
 namespace {
-
-// With more loops in a shell islands are not looked for.
-constexpr std::size_t kMostLoops = 200;
 
 /// Whether a point is inside a ring in the projection along an axis, by the number of edges to its
 /// left; a point on the ring may be either.
@@ -30,16 +28,40 @@ bool is_inside(const EditedSolid& solid, const Ring& ring, const Point& point, i
   return is_in;
 }
 
-/// Whether a loop is an island in another one: it lies inside and runs the other way.
-bool is_island(const EditedSolid& solid, const Ring& outer, const Ring& loop) {
-  const EditedFacet facet{{outer}, kNone};
-  const int turn = turn_of(solid, facet, outer);
-  if (turn == 0 || turn_of(solid, facet, loop) != -turn) return false;
-  const Result<FacetAlone> own = alone(solid, facet);
-  if (!own) return false;
-  const int axis = tessellate::facet_projection(own->solid, 0).axis;
-  return std::ranges::all_of(
-      loop, [&](Index vertex) { return is_inside(solid, outer, solid.vertices[vertex], axis); });
+/// A loop that may have islands.
+class OuterLoop {
+ public:
+  OuterLoop(const EditedSolid& solid, const Ring& loop)
+      : solid_(solid), loop_(loop), axis_(projection_axis(solid, {{loop}, kNone})) {
+    if (axis_) turn_ = turn_of(solid, loop, *axis_);
+  }
+  /// Whether loops in two boxes may lie above each other in the projection of this one.
+  bool is_near(const Box& a, const Box& b) const {
+    if (turn_ == 0) return false;
+    for (int side = 0; side < 3; ++side) {
+      if (side != *axis_ && (a.min[side] > b.max[side] || a.max[side] < b.min[side])) return false;
+    }
+    return true;
+  }
+  /// Whether another loop lies inside and runs the other way.
+  bool has_island(const Ring& other) const {
+    if (turn_of(solid_, other, *axis_) != -turn_) return false;
+    return std::ranges::all_of(other, [&](Index vertex) {
+      return is_inside(solid_, loop_, solid_.vertices[vertex], *axis_);
+    });
+  }
+
+ private:
+  const EditedSolid& solid_;
+  const Ring& loop_;
+  std::optional<int> axis_;
+  int turn_ = 0;
+};
+
+Box box_of(const EditedSolid& solid, const Ring& loop) {
+  Box box;
+  for (const Index vertex : loop) box.include(solid.vertices[vertex]);
+  return box;
 }
 
 }  // namespace
@@ -52,14 +74,25 @@ std::vector<HoleLoops> group_loops(const EditedSolid& solid, std::vector<Ring> l
     by_size.emplace_back(-size, std::move(loop));
   }
   std::sort(by_size.begin(), by_size.end());
+  std::vector<Box> boxes;
+  for (const auto& [size, loop] : by_size) boxes.push_back(box_of(solid, loop));
+  const validate::BoxTree tree(boxes);
   std::vector<HoleLoops> groups;
   std::vector<bool> is_taken(by_size.size());
   for (std::size_t i = 0; i < by_size.size(); ++i) {
     if (is_taken[i]) continue;
     HoleLoops& group = groups.emplace_back();
     group.push_back(by_size[i].second);
-    for (std::size_t j = i + 1; j < by_size.size() && by_size.size() <= kMostLoops; ++j) {
-      if (is_taken[j] || !is_island(solid, by_size[i].second, by_size[j].second)) continue;
+    const OuterLoop outer(solid, by_size[i].second);
+    std::vector<std::size_t> near;
+    tree.visit([&](const Box& box) { return outer.is_near(box, boxes[i]); },
+               [&](Index j) {
+                 const bool is_smaller = j > i && !is_taken[j];
+                 if (is_smaller && outer.is_near(boxes[j], boxes[i])) near.push_back(j);
+               });
+    std::sort(near.begin(), near.end());
+    for (const std::size_t j : near) {
+      if (!outer.has_island(by_size[j].second)) continue;
       group.push_back(by_size[j].second);
       is_taken[j] = true;
     }

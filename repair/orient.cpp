@@ -85,9 +85,10 @@ std::size_t turn_interior_rings(const EditedSolid& solid, std::vector<EditedFace
   std::size_t turned = 0;
   for (EditedFacet& facet : facets) {
     if (facet.rings.size() < 2) continue;
-    const int exterior = turn_of(solid, facet, facet.rings[0]);
-    for (std::size_t i = 1; i < facet.rings.size(); ++i) {
-      if (exterior == 0 || turn_of(solid, facet, facet.rings[i]) != exterior) continue;
+    const auto axis = projection_axis(solid, facet);
+    const int exterior = axis ? turn_of(solid, facet.rings[0], *axis) : 0;
+    for (std::size_t i = 1; i < facet.rings.size() && exterior != 0; ++i) {
+      if (turn_of(solid, facet.rings[i], *axis) != exterior) continue;
       std::reverse(facet.rings[i].begin(), facet.rings[i].end());
       ++turned;
     }
@@ -117,13 +118,18 @@ bool is_closed(const std::vector<EditedFacet>& facets) {
 
 }  // namespace
 
-int turn_of(const EditedSolid& edited, const EditedFacet& facet, const Ring& ring) {
+std::optional<int> projection_axis(const EditedSolid& edited, const EditedFacet& facet) {
   const Result<FacetAlone> own = alone(edited, facet);
-  if (!own || ring.size() < 3) return 0;
+  if (!own) return std::nullopt;
   const tessellate::Projection projection = tessellate::facet_projection(own->solid, 0);
-  if (projection.is_degenerate) return 0;
-  const auto u = (projection.axis + 1) % 3;
-  const auto v = (projection.axis + 2) % 3;
+  if (projection.is_degenerate) return std::nullopt;
+  return projection.axis;
+}
+
+int turn_of(const EditedSolid& edited, const Ring& ring, int axis) {
+  if (ring.size() < 3) return 0;
+  const auto u = (axis + 1) % 3;
+  const auto v = (axis + 2) % 3;
   const auto smallest = std::ranges::min_element(ring, [&](Index a, Index b) {
     const Point& p = edited.vertices[a];
     const Point& q = edited.vertices[b];
@@ -132,7 +138,7 @@ int turn_of(const EditedSolid& edited, const EditedFacet& facet, const Ring& rin
   const auto place = static_cast<std::size_t>(smallest - ring.begin());
   return geometry::orient2d(edited.vertices[ring[(place + ring.size() - 1) % ring.size()]],
                             edited.vertices[ring[place]],
-                            edited.vertices[ring[(place + 1) % ring.size()]], projection.axis);
+                            edited.vertices[ring[(place + 1) % ring.size()]], axis);
 }
 
 std::size_t orient(EditedSolid& solid) {

@@ -38,7 +38,7 @@ struct Moves {
 
 /// Makes vertices at most `metres` apart one (validate/snap.h), and inserts vertices of open edges
 /// into open edges at most `metres` away. Answers with the number of vertices that moved or were
-/// inserted; sets `moves`. Cost: O(n log n); quadratic in the open edges.
+/// inserted; sets `moves`. Cost: O(n log n + vertices close to each open edge).
 std::size_t weld(EditedSolid& solid, double metres, Moves& moves);
 
 /// Replaces facets by their canonical triangles (tessellate/facets.h). Numbers count through all
@@ -61,7 +61,7 @@ struct FillHolesOptions {
   Tolerances tolerances;
   std::size_t most_islands = 4;  // holes with more are not filled by an optimum
   bool prefers_plan = false;     // method "plan" before the optimum
-  CancelPoll is_cancelled;       // ends the search for an optimum
+  CancelPoll is_cancelled;       // then holes stay open
 };
 
 /// Closes the borders of shells. Loops that lie inside another one and run the other way are its

@@ -225,8 +225,11 @@ Repaired repair(const Solid& solid, delaunay::EngineWorkers* workers,
     return repaired;
   }
   Trial trial(solid, workers, options);
+  const CancelPoll& is_cancelled = options.certify.ladder.cancel;
   for (const Attempt& attempt : attempts_of(options)) {
     if (trial.run(attempt, repaired)) break;
+    repaired.is_stopped = is_cancelled && is_cancelled();
+    if (repaired.is_stopped) break;
   }
   return repaired;
 }

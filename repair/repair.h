@@ -33,6 +33,7 @@ struct RepairOptions {
 struct Repaired {
   enum class Outcome : std::uint8_t { valid_as_read, repaired, not_repaired };
   Outcome outcome = Outcome::not_repaired;
+  bool is_stopped = false;           // cancelled before all sets of remedies were tried
   validate::Report before;           // on the solid as it was submitted
   std::optional<Inspection> after;   // on the repaired solid; absent unless it was repaired
   std::optional<EditedSolid> edits;  // the facets of the repaired solid and where they came from
@@ -50,8 +51,9 @@ struct OnSubmittedVertices {
 /// O(n log n).
 Result<OnSubmittedVertices> on_submitted_vertices(const Solid& submitted, const EditedSolid& edits);
 
-/// Repairs a solid. Never fails. Deterministic but for time limits of engines. Cost: that of
-/// validating it once for each set of remedies.
+/// Repairs a solid. Never fails. Deterministic but for time limits of engines and
+/// LadderOptions::cancel, which ends the repair. Cost: that of validating it once for each set of
+/// remedies.
 Repaired repair(const Solid& solid, delaunay::EngineWorkers* workers, const RepairOptions& options);
 
 }  // namespace watertight::repair

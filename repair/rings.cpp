@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "geometry/predicates/predicates.h"
+#include "repair/border_loops.h"
 #include "repair/remedies.h"
 #include "repair/turn.h"
 #include "tessellate/facets.h"
@@ -15,21 +16,32 @@ namespace {
 
 /// Drops repeated points and spikes. Answers with the number of points that went.
 std::size_t clean(Ring& ring) {
-  const std::size_t before = ring.size();
-  for (bool is_changed = true; is_changed && ring.size() > 1;) {
-    is_changed = false;
-    for (std::size_t i = 0; i < ring.size() && ring.size() > 1;) {
-      const std::size_t next = (i + 1) % ring.size();
-      const std::size_t after = (i + 2) % ring.size();
-      if (ring[i] == ring[next] || (ring.size() > 2 && ring[i] == ring[after])) {
-        ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(next));
-        is_changed = true;
-      } else {
-        ++i;
-      }
+  Ring kept;
+  for (const Index vertex : ring) {
+    if (!kept.empty() && kept.back() == vertex) continue;
+    if (kept.size() > 1 && kept[kept.size() - 2] == vertex) {
+      kept.pop_back();
+    } else {
+      kept.push_back(vertex);
     }
   }
-  return before - ring.size();
+  // Where the ring closes.
+  std::size_t begin = 0;
+  while (kept.size() - begin > 1) {
+    const std::size_t size = kept.size() - begin;
+    const bool is_spike_at_end = size > 2 && kept[kept.size() - 2] == kept[begin];
+    if (kept.back() == kept[begin] || is_spike_at_end) {
+      kept.pop_back();
+    } else if (size > 2 && kept.back() == kept[begin + 1]) {
+      ++begin;
+    } else {
+      break;
+    }
+  }
+  kept.erase(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(begin));
+  const std::size_t dropped = ring.size() - kept.size();
+  ring = std::move(kept);
+  return dropped;
 }
 
 bool is_on_line(const EditedSolid& solid, const Ring& ring) {
@@ -88,32 +100,17 @@ std::size_t drop_duplicates(std::vector<EditedFacet>& facets) {
   return before - facets.size();
 }
 
-/// The simple parts of a ring that passes vertices more than once.
-std::vector<Ring> parts_of(const Ring& ring) {
-  std::vector<Ring> parts;
-  Ring open;
-  for (const Index vertex : ring) {
-    const auto found = std::find(open.begin(), open.end(), vertex);
-    if (found != open.end()) {
-      parts.emplace_back(found, open.end());
-      open.erase(found, open.end());
-    }
-    open.push_back(vertex);
-  }
-  parts.push_back(std::move(open));
-  return parts;
-}
-
 /// Divides facets of one ring that passes a vertex twice, where all parts turn alike.
 std::size_t divide_rings(const EditedSolid& solid, std::vector<EditedFacet>& facets) {
   std::vector<EditedFacet> result;
   std::size_t divided = 0;
   for (EditedFacet& facet : facets) {
     std::vector<Ring> parts;
-    if (facet.rings.size() == 1) parts = parts_of(facet.rings[0]);
-    const int turn = parts.size() > 1 ? turn_of(solid, facet, parts[0]) : 0;
+    if (facet.rings.size() == 1) parts = simple_loops_of(facet.rings[0]);
+    const auto axis = parts.size() > 1 ? projection_axis(solid, facet) : std::nullopt;
+    const int turn = axis ? turn_of(solid, parts[0], *axis) : 0;
     const bool is_alike = turn != 0 && std::ranges::all_of(parts, [&](const Ring& part) {
-                            return part.size() > 2 && turn_of(solid, facet, part) == turn;
+                            return part.size() > 2 && turn_of(solid, part, *axis) == turn;
                           });
     if (!is_alike) {
       result.push_back(std::move(facet));
@@ -133,11 +130,10 @@ std::size_t mend_rings(EditedSolid& solid) {
   for (std::vector<EditedFacet>& facets : solid.shells) {
     for (EditedFacet& facet : facets) {
       for (Ring& ring : facet.rings) changes += clean(ring);
-      for (std::size_t ring = facet.rings.size(); ring-- > 1;) {
-        if (!is_on_line(solid, facet.rings[ring])) continue;
-        facet.rings.erase(facet.rings.begin() + static_cast<std::ptrdiff_t>(ring));
-        ++changes;
-      }
+      const auto is_first = [&](const Ring& ring) { return &ring == &facet.rings.front(); };
+      changes += std::erase_if(facet.rings, [&](const Ring& ring) {
+        return !is_first(ring) && is_on_line(solid, ring);
+      });
     }
     changes += std::erase_if(facets, [&](const EditedFacet& facet) { return facet.rings.empty(); });
     changes += divide_rings(solid, facets);

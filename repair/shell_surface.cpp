@@ -19,6 +19,7 @@ std::vector<Triangle> triangles_of_shells(const EditedSolid& solid) {
 
 ShellSurface::ShellSurface(const EditedSolid& solid)
     : solid_(solid),
+      units_(metres_per_unit(solid)),
       triangles_(triangles_of_shells(solid)),
       tree_(validate::boxes_of(solid.vertices, triangles_)) {
   for (const Triangle& triangle : triangles_) {
@@ -55,9 +56,8 @@ bool ShellSurface::has_room_for(const Triangle& triangle) const {
 geometry::Vector3 ShellSurface::behind(Index from, Index to) const {
   const auto found = sides_.find({to, from});
   if (found == sides_.end()) return {};
-  const auto units = metres_per_unit(solid_);
-  return geometry::operator-(metres_of(solid_, found->second.third, units),
-                             metres_of(solid_, from, units));
+  return geometry::operator-(metres_of(solid_, found->second.third, units_),
+                             metres_of(solid_, from, units_));
 }
 
 }  // namespace watertight::repair

@@ -30,6 +30,9 @@ class ShellSurface {
   /// another one, into the facet that is there; zero if that facet has no triangulation.
   geometry::Vector3 behind(Index from, Index to) const;
 
+  /// metres_per_unit() of the solid.
+  const geometry::Vector3& units() const { return units_; }
+
  private:
   struct Side {
     Index third = kNone;  // the third vertex of the triangle with this directed edge
@@ -37,6 +40,7 @@ class ShellSurface {
   };
 
   const EditedSolid& solid_;
+  geometry::Vector3 units_;
   std::vector<Triangle> triangles_;
   std::map<std::pair<Index, Index>, Side> sides_;
   validate::BoxTree tree_;

@@ -68,7 +68,7 @@ void count_facets(const Solid& submitted, const EditedSolid& edits, RepairSummar
 RepairSummary summary_of(const Solid& submitted, const Repaired& repaired) {
   RepairSummary summary;
   summary.outcome = repaired.outcome;
-  summary.is_undecided = repaired.before.verdict == Verdict::undecided;
+  summary.is_undecided = repaired.is_stopped || repaired.before.verdict == Verdict::undecided;
   summary.codes_before = validate::error_codes(repaired.before.findings);
   if (!repaired.edits) return summary;
   summary.remedies = repaired.remedies;

@@ -13,7 +13,7 @@ namespace watertight::repair {
 
 struct RepairSummary {
   Repaired::Outcome outcome = Repaired::Outcome::not_repaired;
-  bool is_undecided = false;       // the verdict on the solid as it was submitted
+  bool is_undecided = false;       // the verdict on the submitted solid, or the repair was stopped
   std::set<int> codes_before;      // the errors of the solid as it was submitted
   std::vector<Remedy> remedies;    // those that changed something
   std::size_t facets_added = 0;    // new ones, and parts of facets that were divided

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -7,6 +9,7 @@
 #include "geometry/vector3.h"
 #include "repair/border_loops.h"
 #include "repair/remedies.h"
+#include "validate/overlap/box_tree.h"
 #include "validate/snap.h"
 
 namespace watertight::repair {
@@ -17,14 +20,18 @@ using geometry::dot;
 using geometry::operator-;
 using geometry::Vector3;
 
-// Beyond this number of border vertices of a shell nothing is inserted into edges.
-constexpr std::size_t kMostBorderVertices = 20'000;
-
-/// A vertex that is near an edge, and how far along it, 0 to 1.
-struct Near {
+/// An edge that one facet uses, as its ring passes it.
+struct OpenEdge {
   std::size_t facet = 0;
   std::size_t ring = 0;
-  std::size_t position = 0;  // of the start of the edge
+  std::size_t position = 0;  // of the start
+  Index from = 0;
+  Index to = 0;
+};
+
+/// A vertex that is near an open edge, and how far along it, 0 to 1.
+struct Near {
+  OpenEdge edge;
   double share = 0;
   Index vertex = 0;
 };
@@ -41,38 +48,65 @@ double share_if_near(const Vector3& a, const Vector3& b, const Vector3& p, doubl
   return dot(off, off) <= metres * metres * square ? share : -1;
 }
 
-std::vector<Near> near_edges(const EditedSolid& solid, const std::vector<EditedFacet>& facets,
-                             double metres) {
-  std::vector<Index> ends;
-  std::vector<std::pair<Index, Index>> open;
-  const BorderLoops borders = border_loops(facets);
-  for (const Ring& loop : borders.loops) {
+std::vector<OpenEdge> open_edges(const std::vector<EditedFacet>& facets) {
+  std::set<std::pair<Index, Index>> open;  // as the facet there runs
+  for (const Ring& loop : border_loops(facets).loops) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      ends.push_back(loop[i]);
-      open.emplace_back(loop[(i + 1) % loop.size()], loop[i]);  // as the facet there runs
+      open.emplace(loop[(i + 1) % loop.size()], loop[i]);
     }
   }
-  std::vector<Near> near;
-  if (ends.size() > kMostBorderVertices) return near;
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  std::sort(open.begin(), open.end());
-  const auto units = metres_per_unit(solid);
+  std::vector<OpenEdge> edges;
   for (std::size_t facet = 0; facet < facets.size(); ++facet) {
     for (std::size_t r = 0; r < facets[facet].rings.size(); ++r) {
       const Ring& ring = facets[facet].rings[r];
       for (std::size_t i = 0; i < ring.size(); ++i) {
-        const std::pair edge{ring[i], ring[(i + 1) % ring.size()]};
-        if (!std::ranges::binary_search(open, edge)) continue;
-        for (const Index vertex : ends) {
-          if (std::ranges::find(ring, vertex) != ring.end()) continue;
-          const double share = share_if_near(metres_of(solid, edge.first, units),
-                                             metres_of(solid, edge.second, units),
-                                             metres_of(solid, vertex, units), metres);
-          if (share >= 0) near.push_back({facet, r, i, share, vertex});
-        }
+        const OpenEdge edge{facet, r, i, ring[i], ring[(i + 1) % ring.size()]};
+        if (open.contains({edge.from, edge.to})) edges.push_back(edge);
       }
     }
+  }
+  return edges;
+}
+
+/// The box of an edge, larger by `metres` on all sides.
+Box box_around(const EditedSolid& solid, const OpenEdge& edge, double metres,
+               const Vector3& metres_per_unit) {
+  Box box;
+  for (const Index vertex : {edge.from, edge.to}) box.include(solid.vertices[vertex]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double unit = metres_per_unit[static_cast<std::size_t>(axis)] * solid.lattice.scale(axis);
+    const double reach = std::ceil(metres / unit) + 1;  // one more for rounding
+    box.min[axis] -= reach;
+    box.max[axis] += reach;
+  }
+  return box;
+}
+
+std::vector<Near> near_edges(const EditedSolid& solid, const std::vector<EditedFacet>& facets,
+                             double metres) {
+  const std::vector<OpenEdge> edges = open_edges(facets);
+  std::vector<Index> ends;
+  for (const OpenEdge& edge : edges) ends.push_back(edge.from);
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  std::vector<Box> places(ends.size());
+  for (std::size_t i = 0; i < ends.size(); ++i) places[i].include(solid.vertices[ends[i]]);
+  const validate::BoxTree tree(places);
+  const auto units = metres_per_unit(solid);
+  std::vector<Near> near;
+  for (const OpenEdge& edge : edges) {
+    const Ring& ring = facets[edge.facet].rings[edge.ring];
+    const Box around = box_around(solid, edge, metres, units);
+    tree.visit([&](const Box& box) { return box.overlaps(around); },
+               [&](Index place) {
+                 const Index vertex = ends[place];
+                 if (!places[place].overlaps(around)) return;
+                 const double share = share_if_near(metres_of(solid, edge.from, units),
+                                                    metres_of(solid, edge.to, units),
+                                                    metres_of(solid, vertex, units), metres);
+                 if (share < 0 || std::ranges::find(ring, vertex) != ring.end()) return;
+                 near.push_back({edge, share, vertex});
+               });
   }
   return near;
 }
@@ -83,12 +117,12 @@ std::size_t insert_near(EditedSolid& solid, double metres) {
     std::vector<Near> near = near_edges(solid, facets, metres);
     // From the last place on, so that the places before it stay.
     std::ranges::sort(near, [](const Near& a, const Near& b) {
-      return std::tie(b.facet, b.ring, b.position, b.share, b.vertex) <
-             std::tie(a.facet, a.ring, a.position, a.share, a.vertex);
+      return std::tie(b.edge.facet, b.edge.ring, b.edge.position, b.share, b.vertex) <
+             std::tie(a.edge.facet, a.edge.ring, a.edge.position, a.share, a.vertex);
     });
     for (const Near& one : near) {
-      Ring& ring = facets[one.facet].rings[one.ring];
-      ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(one.position) + 1, one.vertex);
+      Ring& ring = facets[one.edge.facet].rings[one.edge.ring];
+      ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(one.edge.position) + 1, one.vertex);
     }
     inserted += near.size();
   }

@@ -55,9 +55,14 @@ TEST_CASE("a repeated point and a spike go") {
   solids::Ring& ring = shape[0][0][0];
   ring.insert(ring.begin() + 1, ring[0]);
   ring.insert(ring.begin() + 2, {1000, 1000, 0});
-  ring.insert(ring.begin() + 3, ring[0]);
-  CHECK(hash_of(repaired_with(shape, {Remedy::rings})) ==
-        hash_of(solids::solid_of(a_box(), solids::millimetres())));
+  ring.insert(ring.begin() + 3, {2000, 1000, 0});  // a spike on the spike
+  ring.insert(ring.begin() + 4, ring[2]);
+  ring.insert(ring.begin() + 5, ring[0]);
+  const std::uint64_t wanted = hash_of(solids::solid_of(a_box(), solids::millimetres()));
+  for (std::size_t start = 0; start < ring.size(); ++start) {
+    CHECK(hash_of(repaired_with(shape, {Remedy::rings})) == wanted);
+    std::rotate(ring.begin(), ring.begin() + 1, ring.end());
+  }
 }
 
 TEST_CASE("a facet without area and facets back to back go") {
@@ -200,6 +205,62 @@ TEST_CASE("a court without a floor gets one facet with a ring") {
   CHECK(result.holes[0].loops == 2);
   CHECK(result.holes[0].method == "facet");
   CHECK(hash_of(result.after->certified->solid.solid()) == wanted);
+}
+
+TEST_CASE("a floor with hundreds of courts is one facet with as many rings") {
+  constexpr std::size_t kCourts = 300;
+  Shape shape{solids::pierced_box(kCourts)};
+  const std::uint64_t wanted = hash_of(solids::solid_of(shape));
+  shape[0].erase(shape[0].begin());
+  const Repaired result = repair(solids::solid_of(shape), nullptr, everything());
+  REQUIRE(result.outcome == Outcome::repaired);
+  REQUIRE(result.holes.size() == 1);
+  CHECK(result.holes[0].loops == kCourts + 1);
+  CHECK(result.holes[0].method == "facet");
+  CHECK(hash_of(result.after->certified->solid.solid()) == wanted);
+}
+
+TEST_CASE("a strip with one side only stays as it is") {
+  constexpr std::size_t kQuads = 12;
+  solids::Shell strip;
+  const auto at = [](std::size_t step, double side) {
+    const double turn = 2 * 3.141592653589793 * static_cast<double>(step) / kQuads;
+    const double radius = 5000 + side * 1000 * std::cos(turn / 2);
+    return Point{std::round(radius * std::cos(turn)), std::round(radius * std::sin(turn)),
+                 std::round(side * 1000 * std::sin(turn / 2))};
+  };
+  for (std::size_t i = 0; i < kQuads; ++i) {
+    strip.push_back({{at(i, -1), at(i + 1, -1), at(i, 1)}});
+    strip.push_back({{at(i, 1), at(i + 1, -1), at(i + 1, 1)}});
+  }
+  const Repaired result =
+      repair(solids::solid_of({strip}, solids::millimetres()), nullptr, everything());
+  CHECK(result.outcome == Outcome::not_repaired);
+  CHECK(result.before.verdict == Verdict::invalid);
+  CHECK(!result.edits);
+}
+
+TEST_CASE("a repair that is cancelled stops, and says that it was stopped") {
+  Shape shape = a_box();
+  shape[0].erase(shape[0].begin());
+  const Solid solid = solids::solid_of(shape, solids::millimetres());
+  RepairOptions options = everything();
+  std::size_t polls = 0;
+  options.certify.ladder.cancel = [&polls] {
+    ++polls;
+    return false;
+  };
+  REQUIRE(repair(solid, nullptr, options).outcome == Outcome::repaired);
+  REQUIRE(polls > 0);
+  const std::size_t all = polls;
+  for (std::size_t most = 0; most < all; ++most) {
+    polls = 0;
+    options.certify.ladder.cancel = [&polls, most] { return ++polls > most; };
+    const Repaired result = repair(solid, nullptr, options);
+    INFO(most);
+    if (result.outcome == Outcome::repaired) continue;
+    CHECK(summary_of(solid, result).is_undecided);
+  }
 }
 
 TEST_CASE("a court on sloping ground is filled together with its border") {

@@ -13,7 +13,8 @@
 #include "cli/terminal/printable.h"
 #include "files/files.h"
 #include "files/inputs.h"
-#include "pipeline/repaired/repair_document.h"
+#include "files/names.h"
+#include "pipeline/repaired/repair_stream.h"
 #include "validate/finding_kinds.h"
 
 namespace watertight::cli {
@@ -152,6 +153,79 @@ Result<Document> read_to_repair(const RepairCommand& command) {
   return std::move(input->document);
 }
 
+void print_notes(const RepairCommand& command, const Document& document) {
+  for (const std::string& note : document.notes) {
+    std::fprintf(stderr, "watertight: %s: %s\n", printable(command.input).c_str(),
+                 printable(note).c_str());
+  }
+}
+
+repair::RepairOptions options_of(const RepairCommand& command) {
+  repair::RepairOptions options;
+  options.remedies = *repair::remedies_of(command.remedies);
+  options.most_islands = command.most_islands;
+  options.weld_metres = command.weld_metres;
+  validate::GroupOptions groups;  // solids are repaired one by one
+  apply(command.rules, options.certify, groups);
+  return options;
+}
+
+/// Whether the input, by its name, is a sequence that is written as one: it is read line by line.
+bool is_stream(const RepairCommand& command) {
+  const auto from = files::format_of_name(files::name_without_compression(command.input));
+  const auto to = files::format_of_name(command.output);
+  const bool is_sequence = from && *from == Format::city_json_seq;
+  const bool stays = command.output == "-" || (to && *to == Format::city_json_seq);
+  return is_sequence && stays && command.surfaces != "as-solids";
+}
+
+/// Repairs a file line by line. Nothing: the file is no sequence. `at` becomes the file that an
+/// error is about.
+Result<std::optional<DocumentRepair>> repaired_lines(const RepairCommand& command,
+                                                     delaunay::EngineWorkers& workers,
+                                                     std::string& at) {
+  const auto argument = single_input(command.input);
+  if (!argument) return argument.error();
+  formats::ReadOptions reading;
+  reading.keep_text = true;
+  reading.surfaces = surface_rule(command.surfaces).reading;
+  auto input = files::open_input(*argument, reading);
+  if (!input) return std::move(input).error();
+  if (input->reader.feature_count()) return std::optional<DocumentRepair>();
+  print_notes(command, input->reader.document());
+  auto writer = files::FileWriter::open(command.output);
+  if (!writer) at = command.output;
+  if (!writer) return std::move(writer).error();
+  const auto write = [&](std::string_view text) {
+    Status written = writer->write(text);
+    if (!written) at = command.output;
+    return written;
+  };
+  auto outcome =
+      pipeline::repair_stream(input->reader, &workers, options_of(command), command.jobs, write);
+  if (!outcome) return std::move(outcome).error();
+  at = command.output;
+  if (const Status saved = writer->commit(); !saved) return saved.error();
+  return std::optional(*std::move(outcome));
+}
+
+/// Repairs a document that is read whole.
+Result<DocumentRepair> repaired_whole(const RepairCommand& command,
+                                      delaunay::EngineWorkers& workers, Exit& saved) {
+  auto document = read_to_repair(command);
+  if (!document) return std::move(document).error();
+  print_notes(command, *document);
+  auto outcome = pipeline::repair_document(*document, &workers, options_of(command),
+                                           static_cast<unsigned>(command.jobs));
+  if (!outcome) return outcome;
+  if (command.surfaces == "as-solids") {
+    const auto turned = formats::turn_surfaces_into_solids(*document);
+    if (!turned) return turned.error();
+  }
+  saved = save_documents({&*document, 1}, command.input, command.output);
+  return outcome;
+}
+
 }  // namespace
 
 Exit run(const RepairCommand& command) {
@@ -159,29 +233,21 @@ Exit run(const RepairCommand& command) {
     return fail(command.input, {ErrorCode::invalid_argument,
                                 "the output '" + command.output + "' would replace the input"});
   }
-  auto document = read_to_repair(command);
-  if (!document) return fail(command.input, document.error());
-  for (const std::string& note : document->notes) {
-    std::fprintf(stderr, "watertight: %s: %s\n", printable(command.input).c_str(),
-                 printable(note).c_str());
-  }
-  repair::RepairOptions options;
-  options.remedies = *repair::remedies_of(command.remedies);
-  options.most_islands = command.most_islands;
-  options.weld_metres = command.weld_metres;
-  validate::GroupOptions groups;  // solids are repaired one by one
-  apply(command.rules, options.certify, groups);
   delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
-  const auto outcome =
-      pipeline::repair_document(*document, &workers, options, static_cast<unsigned>(command.jobs));
-  if (!outcome) return fail(command.input, outcome.error());
-  if (command.surfaces == "as-solids") {
-    if (const auto turned = formats::turn_surfaces_into_solids(*document); !turned) {
-      return fail(command.input, turned.error());
-    }
+  std::optional<DocumentRepair> outcome;
+  if (is_stream(command)) {
+    std::string at = command.input;
+    auto lines = repaired_lines(command, workers, at);
+    if (!lines) return fail(at, lines.error());
+    outcome = *std::move(lines);
   }
-  const Exit saved = save_documents({&*document, 1}, command.input, command.output);
-  if (saved != Exit::valid) return saved;
+  if (!outcome) {
+    Exit saved = Exit::valid;
+    auto whole = repaired_whole(command, workers, saved);
+    if (!whole) return fail(command.input, whole.error());
+    if (saved != Exit::valid) return saved;
+    outcome = *std::move(whole);
+  }
   if (!command.report.empty()) {
     const std::string report = pipeline::repair_report_json(*outcome) + '\n';
     const Status written = files::write_file(command.report, as_bytes(report));

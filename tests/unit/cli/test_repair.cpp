@@ -100,6 +100,38 @@ TEST_CASE_METHOD(Fixture, "features without a change come back byte for byte") {
   CHECK(changed == 3);  // as many solids as remedies that guess nothing mend
 }
 
+TEST_CASE_METHOD(Fixture,
+                 "a sequence that is read line by line is repaired as one that is read whole") {
+  const std::string text = test::read_text(kInvalid);
+  write("whole.json", text);  // by its name no sequence
+  CHECK(run("repair whole.json -o a.city.jsonl --remedies all --report a.json -q").status == 1);
+  CHECK(run("repair " + kInvalid + " -o b.city.jsonl --remedies all --report b.json -q").status ==
+        1);
+  CHECK(read("a.city.jsonl") == read("b.city.jsonl"));
+  CHECK(read("a.json") == read("b.json"));
+  CHECK(run("repair " + kInvalid + " -o - --remedies all").output == read("a.city.jsonl"));
+  std::string spaced;
+  for (const std::string& line : lines_of(text)) spaced += line + "\r\n\r\n";
+  write("spaced.city.jsonl", spaced);
+  CHECK(run("repair spaced.city.jsonl -o c.city.jsonl --remedies all -q").status == 1);
+  std::string unspaced = read("c.city.jsonl");
+  std::erase(unspaced, '\r');
+  CHECK(unspaced == read("a.city.jsonl"));
+}
+
+TEST_CASE_METHOD(Fixture, "a line that cannot be read ends a repair, and what was written goes") {
+  const std::string text = test::read_text(kInvalid);
+  write("cut.city.jsonl", text.substr(0, text.size() - 100));
+  write("out.city.jsonl", "old");
+  const Ran ran = run("repair cut.city.jsonl -o out.city.jsonl");
+  CHECK(ran.status == 2);
+  CHECK(ran.output.find("line 12") != std::string::npos);
+  CHECK(read("out.city.jsonl") == "old");
+  const Ran unwritten = run("repair " + kInvalid + " -o no/such/folder.city.jsonl");
+  CHECK(unwritten.status == 2);
+  CHECK(unwritten.output.find("no/such/folder.city.jsonl") != std::string::npos);
+}
+
 TEST_CASE_METHOD(Fixture, "semantics follow their facets, and new facets are closure surfaces") {
   const std::string header =
       R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},)"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "fill/triangulate_loops.h"
@@ -129,24 +131,59 @@ HoleFill fill_hole(const EditedSolid& solid, const ShellSurface& surface, HoleLo
   return fill;
 }
 
+/// The sum of angles for each inner edge of a filling (n + 3k - 6 for k loops of n vertices).
+std::optional<double> cost_of(const EditedSolid& solid, const ShellSurface& surface,
+                              const HoleLoops& loops, const FillHolesOptions& options) {
+  HoleFill fill;
+  fill.loops = loops.size();
+  if (fill.loops > options.most_islands + 1) return std::nullopt;
+  for (const Ring& loop : loops) fill.vertices += loop.size();
+  if (!best_triangles(solid, surface, loops, options.is_cancelled, fill)) return std::nullopt;
+  return fill.angle / static_cast<double>(fill.vertices + 3 * fill.loops - 6);
+}
+
+/// The holes of a shell.
+struct ShellHoles {
+  std::vector<HoleLoops> holes;
+  std::size_t left_over = 0;  // edges of the border that belong to no loop
+  bool has_joined = false;    // a hole joins two parts
+};
+
+ShellHoles holes_of(const EditedSolid& solid, const ShellSurface& surface, std::size_t shell,
+                    const FillHolesOptions& options) {
+  BorderLoops borders = border_loops(solid.shells[shell]);
+  ShellHoles result{group_loops(solid, std::move(borders.loops)), borders.left_over, false};
+  if (!options.joins_parts) return result;
+  const std::size_t before = result.holes.size();
+  result.holes =
+      join_parts(solid.shells[shell], solid.vertices.size(), std::move(result.holes),
+                 [&](const HoleLoops& loops) { return cost_of(solid, surface, loops, options); });
+  result.has_joined = result.holes.size() < before;
+  return result;
+}
+
 }  // namespace
 
 std::vector<HoleFill> fill_holes(EditedSolid& solid, const FillHolesOptions& options) {
   std::vector<HoleFill> fills;
   const ShellSurface surface(solid);
-  std::vector<std::vector<EditedFacet>> added(solid.shells.size());
+  std::vector<ShellHoles> shells;
   for (std::size_t shell = 0; shell < solid.shells.size(); ++shell) {
-    BorderLoops borders = border_loops(solid.shells[shell]);
-    for (HoleLoops& loops : group_loops(solid, std::move(borders.loops))) {
+    shells.push_back(holes_of(solid, surface, shell, options));
+  }
+  if (options.joins_parts && std::ranges::none_of(shells, &ShellHoles::has_joined)) return fills;
+  std::vector<std::vector<EditedFacet>> added(solid.shells.size());
+  for (std::size_t shell = 0; shell < shells.size(); ++shell) {
+    for (HoleLoops& loops : shells[shell].holes) {
       if (options.is_cancelled && options.is_cancelled()) break;
       HoleFill fill = fill_hole(solid, surface, std::move(loops), options, added[shell]);
       fill.shell = static_cast<Index>(shell);
       fills.push_back(std::move(fill));
     }
-    if (borders.left_over == 0) continue;
+    if (shells[shell].left_over == 0) continue;
     HoleFill& fill = fills.emplace_back();
     fill.shell = static_cast<Index>(shell);
-    fill.vertices = borders.left_over;
+    fill.vertices = shells[shell].left_over;
     fill.method = "unfilled";
     fill.reason = "more than two facets meet along the border";
   }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <tuple>
 #include <utility>
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/predicates/predicates.h"
 #include "geometry/vector3.h"
 #include "repair/turn.h"
@@ -58,6 +60,32 @@ class OuterLoop {
   int turn_ = 0;
 };
 
+// With more holes in a shell their parts are not joined.
+constexpr std::size_t kMostJoinedHoles = 8;
+
+/// Two holes that may become one.
+struct JoinedPair {
+  double cost = 0;
+  std::size_t first = 0;
+  std::size_t second = 0;
+};
+
+geometry::DisjointSets parts_of(std::span<const EditedFacet> facets, std::size_t vertex_count) {
+  geometry::DisjointSets parts(vertex_count);
+  for (const EditedFacet& facet : facets) {
+    for (const Ring& ring : facet.rings) {
+      for (const Index vertex : ring) parts.join(facet.rings[0][0], vertex);
+    }
+  }
+  return parts;
+}
+
+HoleLoops both(const HoleLoops& first, const HoleLoops& second) {
+  HoleLoops loops = first;
+  loops.insert(loops.end(), second.begin(), second.end());
+  return loops;
+}
+
 Box box_of(const EditedSolid& solid, const Ring& loop) {
   Box box;
   for (const Index vertex : loop) box.include(solid.vertices[vertex]);
@@ -98,6 +126,34 @@ std::vector<HoleLoops> group_loops(const EditedSolid& solid, std::vector<Ring> l
     }
   }
   return groups;
+}
+
+std::vector<HoleLoops> join_parts(std::span<const EditedFacet> facets, std::size_t vertex_count,
+                                  std::vector<HoleLoops> holes, const HoleCost& cost) {
+  if (holes.size() < 2 || holes.size() > kMostJoinedHoles) return holes;
+  geometry::DisjointSets parts = parts_of(facets, vertex_count);
+  const auto part_of = [&](std::size_t hole) { return parts.root(holes[hole][0][0]); };
+  std::vector<JoinedPair> pairs;
+  for (std::size_t i = 0; i < holes.size(); ++i) {
+    for (std::size_t j = i + 1; j < holes.size(); ++j) {
+      if (part_of(i) == part_of(j)) continue;
+      const auto own = cost(both(holes[i], holes[j]));
+      if (own) pairs.push_back({*own, i, j});
+    }
+  }
+  std::ranges::sort(pairs, {}, [](const JoinedPair& pair) {
+    return std::tuple(pair.cost, pair.first, pair.second);
+  });
+  for (const auto& [own, first, second] : pairs) {
+    if (holes[first].empty() || holes[second].empty() || part_of(first) == part_of(second))
+      continue;
+    parts.join(part_of(first), part_of(second));
+    holes.push_back(both(holes[first], holes[second]));
+    holes[first].clear();
+    holes[second].clear();
+  }
+  std::erase_if(holes, [](const HoleLoops& hole) { return hole.empty(); });
+  return holes;
 }
 
 }  // namespace watertight::repair

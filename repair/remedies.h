@@ -61,6 +61,7 @@ struct FillHolesOptions {
   Tolerances tolerances;
   std::size_t most_islands = 4;  // holes with more are not filled by an optimum
   bool prefers_plan = false;     // method "plan" before the optimum
+  bool joins_parts = false;      // only where tubes join parts of a shell (hole_groups.h)
   CancelPoll is_cancelled;       // then holes stay open
 };
 
@@ -71,7 +72,8 @@ struct FillHolesOptions {
 ///             the hole, among the Delaunay triangles of its vertices that meet no other facet
 ///   all       the same among all triangles, for small holes
 ///   plan      the canonical triangles of a facet with these rings
-/// Cost: O(n log n) and that of fill/triangulate_loops.h for each hole.
+/// Nothing is filled with `joins_parts` where no two parts can be joined. Cost: O(n log n) and that
+/// of fill/triangulate_loops.h for each hole.
 std::vector<HoleFill> fill_holes(EditedSolid& solid, const FillHolesOptions& options);
 
 }  // namespace watertight::repair

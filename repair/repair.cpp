@@ -21,6 +21,7 @@ struct Attempt {
   bool has_facets = false;
   bool has_fill = false;
   bool prefers_plan = false;  // holes are filled in plan rather than by the least angles
+  bool joins_parts = false;   // parts of a shell are joined by tubes
 };
 
 bool has(const RepairOptions& options, Remedy remedy) {
@@ -47,10 +48,14 @@ std::vector<Attempt> attempts_of(const RepairOptions& options) {
       for (const bool facets : {false, true}) {
         if (facets && !has(options, Remedy::facets)) break;
         if (!fill && !facets && weld == 0) continue;
-        Attempt attempt{has_orientation, has_junctions, weld, facets, fill, false};
+        Attempt attempt{has_orientation, has_junctions, weld, facets, fill, false, false};
         attempts.push_back(attempt);
+        if (!fill) continue;
         attempt.prefers_plan = true;
-        if (fill) attempts.push_back(attempt);
+        attempts.push_back(attempt);
+        attempt.prefers_plan = false;
+        attempt.joins_parts = true;
+        attempts.push_back(attempt);
       }
     }
   }
@@ -88,8 +93,10 @@ class Trial {
     if (attempt.has_junctions) note(Remedy::junctions, insert_junctions(work));
     std::vector<HoleFill> holes;
     if (attempt.has_fill) {
-      holes = fill_holes(work, {options_.certify.tolerances, options_.most_islands,
-                                attempt.prefers_plan, options_.certify.ladder.cancel});
+      holes = fill_holes(work,
+                         {options_.certify.tolerances, options_.most_islands, attempt.prefers_plan,
+                          attempt.joins_parts, options_.certify.ladder.cancel});
+      if (attempt.joins_parts && holes.empty()) return false;
       note(Remedy::fill, static_cast<std::size_t>(std::ranges::count_if(
                              holes, [](const HoleFill& hole) { return hole.facets > 0; })));
     }

@@ -207,6 +207,28 @@ TEST_CASE("a court without a floor gets one facet with a ring") {
   CHECK(hash_of(result.after->certified->solid.solid()) == wanted);
 }
 
+/// A tower of three storeys without the walls of the one in the middle: two parts.
+Shape cut_tower() {
+  solids::Shell shell = solids::box({0, 0, 0}, {4000, 3000, 3000});
+  shell.erase(shell.begin() + 1);  // the top
+  solids::Shell upper = solids::box({0, 0, 6000}, {4000, 3000, 9000});
+  upper.erase(upper.begin());  // the floor
+  shell.insert(shell.end(), upper.begin(), upper.end());
+  return {shell};
+}
+
+TEST_CASE("two parts of a shell are joined by a tube where caps leave two solids") {
+  const Repaired result =
+      repair(solids::solid_of(cut_tower(), solids::millimetres()), nullptr, everything());
+  REQUIRE(result.outcome == Outcome::repaired);
+  REQUIRE(result.holes.size() == 1);
+  CHECK(result.holes[0].loops == 2);
+  CHECK(result.holes[0].vertices == 8);
+  CHECK(result.holes[0].facets == 8);
+  REQUIRE(result.after->report.measures);
+  CHECK(result.after->report.measures->volume == Catch::Approx(4.0 * 3.0 * 9.0));
+}
+
 TEST_CASE("a floor with hundreds of courts is one facet with as many rings") {
   constexpr std::size_t kCourts = 300;
   Shape shape{solids::pierced_box(kCourts)};

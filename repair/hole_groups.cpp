@@ -73,8 +73,12 @@ struct JoinedPair {
 geometry::DisjointSets parts_of(std::span<const EditedFacet> facets, std::size_t vertex_count) {
   geometry::DisjointSets parts(vertex_count);
   for (const EditedFacet& facet : facets) {
+    Index first = kNone;  // a ring may be empty
     for (const Ring& ring : facet.rings) {
-      for (const Index vertex : ring) parts.join(facet.rings[0][0], vertex);
+      for (const Index vertex : ring) {
+        if (first == kNone) first = vertex;
+        parts.join(first, vertex);
+      }
     }
   }
   return parts;

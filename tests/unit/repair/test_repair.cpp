@@ -229,6 +229,19 @@ TEST_CASE("two parts of a shell are joined by a tube where caps leave two solids
   CHECK(result.after->report.measures->volume == Catch::Approx(4.0 * 3.0 * 9.0));
 }
 
+TEST_CASE("rings without vertices in two parts of a shell are no trouble") {
+  Shape shape = cut_tower();
+  shape[0].push_back({{}, shape[0][0][0]});
+  shape[0].push_back({{}, {}});
+  for (const std::vector<Remedy>& remedies : {std::vector{Remedy::fill}, everything().remedies}) {
+    RepairOptions options = everything();
+    options.remedies = remedies;
+    const Repaired result =
+        repair(solids::solid_of(shape, solids::millimetres()), nullptr, options);
+    CHECK(result.before.verdict == Verdict::invalid);
+  }
+}
+
 TEST_CASE("a floor with hundreds of courts is one facet with as many rings") {
   constexpr std::size_t kCourts = 300;
   Shape shape{solids::pierced_box(kCourts)};

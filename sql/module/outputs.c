@@ -189,40 +189,61 @@ wt_solid_parts(PG_FUNCTION_ARGS)
 	PG_RETURN_DATUM(jsonb_of(reply));
 }
 
-/* The city model in a row of the service; NULL where there is none. */
-PG_FUNCTION_INFO_V1(wt_solid_stored_model);
-Datum
-wt_solid_stored_model(PG_FUNCTION_ARGS)
+/* The text of a feature in a row of the service. */
+typedef struct StoredText
 {
-	wt_reply   *reply = new_reply();
+	wt_job		job;
+	wt_blob_view dictionary;
+	const char *id;
+} StoredText;
+
+/* The text that the first three arguments of a function are. */
+static StoredText
+stored_text(FunctionCallInfo fcinfo)
+{
 	bytea	   *packed = PG_GETARG_BYTEA_PP(0);
 	bytea	   *dictionary = PG_GETARG_BYTEA_PP(1);
-	wt_blob_view content = {(const uint8_t *) VARDATA_ANY(dictionary), VARSIZE_ANY_EXHDR(dictionary)};
-	wt_job		job = new_job((const uint8_t *) VARDATA_ANY(packed), VARSIZE_ANY_EXHDR(packed), NULL, false);
+	StoredText	text;
 
-	wt_bridge_stored_model(&job, content, name_of(PG_GETARG_DATUM(2)), reply);
+	text.job = new_job((const uint8_t *) VARDATA_ANY(packed), VARSIZE_ANY_EXHDR(packed), NULL, false);
+	text.dictionary.bytes = (const uint8_t *) VARDATA_ANY(dictionary);
+	text.dictionary.size = VARSIZE_ANY_EXHDR(dictionary);
+	text.id = name_of(PG_GETARG_DATUM(2));
+	return text;
+}
+
+/* A reply as jsonb; NULL for one without bytes. */
+static Datum
+jsonb_or_null(FunctionCallInfo fcinfo, wt_reply *reply)
+{
 	check_reply(reply);
 	if (reply->size == 0)
 		PG_RETURN_NULL();
 	PG_RETURN_DATUM(jsonb_of(reply));
 }
 
-/* How the service has repaired a solid of a stored feature. */
+/* The city model in a row of the service; NULL where there is none. */
+PG_FUNCTION_INFO_V1(wt_solid_stored_model);
+Datum
+wt_solid_stored_model(PG_FUNCTION_ARGS)
+{
+	StoredText	text = stored_text(fcinfo);
+	wt_reply   *reply = new_reply();
+
+	wt_bridge_stored_model(&text.job, text.dictionary, text.id, reply);
+	return jsonb_or_null(fcinfo, reply);
+}
+
+/* How the service has repaired a solid of a stored feature; NULL for one that came so. */
 PG_FUNCTION_INFO_V1(wt_solid_stored_repair);
 Datum
 wt_solid_stored_repair(PG_FUNCTION_ARGS)
 {
+	StoredText	text = stored_text(fcinfo);
 	wt_reply   *reply = new_reply();
-	bytea	   *packed = PG_GETARG_BYTEA_PP(0);
-	bytea	   *dictionary = PG_GETARG_BYTEA_PP(1);
-	wt_blob_view content = {(const uint8_t *) VARDATA_ANY(dictionary), VARSIZE_ANY_EXHDR(dictionary)};
-	wt_job		job = new_job((const uint8_t *) VARDATA_ANY(packed), VARSIZE_ANY_EXHDR(packed), NULL, false);
 
-	wt_bridge_stored_repair(&job, content, name_of(PG_GETARG_DATUM(2)), (uint32_t) PG_GETARG_INT32(3), reply);
-	check_reply(reply);
-	if (reply->size == 0)
-		PG_RETURN_NULL();
-	PG_RETURN_DATUM(jsonb_of(reply));
+	wt_bridge_stored_repair(&text.job, text.dictionary, text.id, (uint32_t) PG_GETARG_INT32(3), reply);
+	return jsonb_or_null(fcinfo, reply);
 }
 
 /* The tetrahedra of a solid, as rows. */

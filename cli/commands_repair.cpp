@@ -194,8 +194,10 @@ Result<std::optional<DocumentRepair>> repaired_lines(const RepairCommand& comman
   if (input->reader.feature_count()) return std::optional<DocumentRepair>();
   print_notes(command, input->reader.document());
   auto writer = files::FileWriter::open(command.output);
-  if (!writer) at = command.output;
-  if (!writer) return std::move(writer).error();
+  if (!writer) {
+    at = command.output;
+    return std::move(writer).error();
+  }
   const auto write = [&](std::string_view text) {
     Status written = writer->write(text);
     if (!written) at = command.output;

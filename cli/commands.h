@@ -120,11 +120,14 @@ struct RepairCommand {
   std::string remedies = "rings,orientation,junctions";  // or "all"
   double weld_metres = 0;
   std::size_t most_islands = 4;
-  std::string report;  // a file for what was done, as JSON
+  std::string report;  // file for the JSON report, "" for none
+  std::string html;    // file for an HTML page, "" for none
+  bool leaves_times_out = false;
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
   bool is_quiet = false;
   std::size_t jobs = 1;
+  std::string program_version;
 };
 Exit run(const RepairCommand& command);
 

@@ -2,19 +2,22 @@
 //
 // The command repair: documents whose invalid solids are made valid where a remedy does it.
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <set>
 
-#include "base/quantity.h"
 #include "cli/commands.h"
 #include "cli/outputs/documents.h"
+#include "cli/outputs/report_files.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "files/files.h"
 #include "files/inputs.h"
 #include "files/names.h"
+#include "pipeline/repaired/repair_notes.h"
 #include "pipeline/repaired/repair_stream.h"
+#include "pipeline/repaired/validate_repaired.h"
 #include "validate/finding_kinds.h"
 
 namespace watertight::cli {
@@ -24,61 +27,12 @@ using pipeline::DocumentRepair;
 using pipeline::SolidRepair;
 using repair::Remedy;
 
-std::string fixed_text(double value, int decimals) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
-}
-
-/// The facets that came, went and were turned, and the vertices that moved: "1 facet of 80.000 m2
-/// added, 2 removed". Empty without any.
-std::string changes_of(const SolidRepair& repair) {
-  const repair::RepairSummary& changes = repair.summary;
-  std::vector<std::string> parts;
-  if (changes.facets_added > 0) {
-    std::string text = quantity(changes.facets_added, "facet");
-    if (changes.area_added > 0) text += " of " + fixed_text(changes.area_added, 3) + " m2";
-    parts.push_back(text + " added");
-  }
-  if (changes.facets_removed > 0) {
-    parts.push_back(quantity(changes.facets_removed, "facet") + " removed");
-  }
-  if (changes.facets_turned > 0) {
-    parts.push_back(quantity(changes.facets_turned, "facet") + " turned");
-  }
-  if (changes.moves.vertices > 0) {
-    parts.push_back(quantity(changes.moves.vertices, "vertex", "vertices") + " moved by at most " +
-                    fixed_text(changes.moves.largest_metres, 4) + " m");
-  }
-  std::string text;
-  for (const std::string& part : parts) text.append(text.empty() ? "" : ", ").append(part);
-  return text;
-}
-
-/// What was done to a solid, or what is wrong with it.
-std::string account_of(const SolidRepair& repair) {
-  std::string text;
-  const auto add = [&](const std::string& part, const char* between) {
-    text.append(text.empty() ? "" : between).append(part);
-  };
-  if (!repair.is_repaired()) {
-    for (const int code : repair.summary.codes_before) {
-      add(std::to_string(code) + ' ' + std::string(validate::finding_name(code)), ", ");
-    }
-    return (repair.summary.is_undecided ? "undecided" : "not repaired: ") + text;
-  }
-  for (const Remedy remedy : repair.summary.remedies) add(std::string(to_string(remedy)), ", ");
-  text = "repaired: " + text;
-  const std::string changes = changes_of(repair);
-  return changes.empty() ? text : text + " (" + changes + ')';
-}
-
 void print(const SolidRepair& repair) {
   const std::string& object =
       repair.source.object_id.empty() ? repair.feature : repair.source.object_id;
   std::string place = printable(object);
   if (!repair.source.lod.empty()) place += " LoD " + printable(repair.source.lod);
-  std::printf("%s: %s\n", place.c_str(), account_of(repair).c_str());
+  std::printf("%s: %s\n", place.c_str(), pipeline::account_of(repair.summary).c_str());
 }
 
 void print_row(const char* name, std::uint64_t count, int indent = 0) {
@@ -131,35 +85,6 @@ Exit exit_of_repair(const DocumentRepair& outcome) {
   return exit;
 }
 
-/// The document of an argument. A GML document becomes a city model.
-Result<Document> read_to_repair(const RepairCommand& command) {
-  const auto argument = single_input(command.input);
-  if (!argument) return argument.error();
-  const auto whole = files::read_whole(*argument, {});
-  if (!whole) return whole.error();
-  formats::ReadOptions options;
-  options.split_features = false;
-  options.keep_text = true;
-  options.surfaces = surface_rule(command.surfaces).reading;
-  const auto from = formats::detect_format(whole->name, whole->bytes);
-  const auto to = files::format_of_name(command.output);
-  const bool is_city = to && (*to == Format::city_json || *to == Format::city_json_seq);
-  if (from && *from == Format::gml && is_city) {
-    return pipeline::read_to_convert(whole->bytes, Format::gml, *to, options);
-  }
-  options.keep_text = from && (*from == Format::city_json || *from == Format::city_json_seq);
-  auto input = files::load_input(whole->name, whole->bytes, options);
-  if (!input) return std::move(input).error();
-  return std::move(input->document);
-}
-
-void print_notes(const RepairCommand& command, const Document& document) {
-  for (const std::string& note : document.notes) {
-    std::fprintf(stderr, "watertight: %s: %s\n", printable(command.input).c_str(),
-                 printable(note).c_str());
-  }
-}
-
 repair::RepairOptions options_of(const RepairCommand& command) {
   repair::RepairOptions options;
   options.remedies = *repair::remedies_of(command.remedies);
@@ -168,6 +93,93 @@ repair::RepairOptions options_of(const RepairCommand& command) {
   validate::GroupOptions groups;  // solids are repaired one by one
   apply(command.rules, options.certify, groups);
   return options;
+}
+
+/// A run of `watertight repair`.
+class RepairRun {
+ public:
+  explicit RepairRun(const RepairCommand& command)
+      : command_(command),
+        options_(options_of(command)),
+        workers_(delaunay::EngineWorkers::Options{{}, {}, command.jobs}) {
+    validation_.threads = command.jobs;
+    apply(command.rules, validation_.certify, validation_.groups);
+  }
+
+  Exit run();
+
+ private:
+  Status open_reports();
+  report::ReportHead head() const;
+  Result<std::optional<DocumentRepair>> repair_lines();
+  Result<std::optional<DocumentRepair>> repair_whole();
+  Result<pipeline::RepairedText> repair_document();
+  Status report_on(const Document& document, const DocumentRepair& outcome);
+  Status begin_reports(std::optional<Format> format);
+  Status end_reports(const std::vector<std::string>& notes);
+  void print_notes(const Document& document) const;
+  void print_outcome(const DocumentRepair& outcome) const;
+  /// The error, which is about another file than the input.
+  Error about(const std::string& file, Error error) {
+    at_ = file;
+    return error;
+  }
+
+  const RepairCommand& command_;
+  const repair::RepairOptions options_;
+  pipeline::StreamOptions validation_;  // of the repaired document, for reports
+  delaunay::EngineWorkers workers_;
+  ReportFiles reports_;
+  std::string at_ = command_.input;  // the file that an error is about
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+report::ReportHead RepairRun::head() const {
+  report::ReportHead head;
+  head.program_version = command_.program_version;
+  if (!command_.leaves_times_out) head.time = time_now();
+  const CertifyOptions& certify = validation_.certify;
+  head.acceptance = {certify.tolerances, certify.proof, geometry::kRuleSet};
+  head.is_strict = certify.ladder.strict;
+  head.overlap_metres = validation_.groups.overlap_metres;
+  head.surfaces = command_.surfaces;
+  head.repair = options_;
+  return head;
+}
+
+Status RepairRun::open_reports() {
+  const std::array<std::pair<const std::string*, ReportForm>, 2> outputs{
+      {{&command_.report, ReportForm::json}, {&command_.html, ReportForm::html}}};
+  for (const auto& [path, form] : outputs) {
+    if (path->empty()) continue;
+    const bool is_taken = files::is_same_file(*path, command_.output) ||
+                          (*path != "-" && files::is_same_file(*path, command_.input));
+    Status opened = is_taken ? Error{ErrorCode::invalid_argument,
+                                     "a report would replace the input or the output"}
+                             : reports_.open(*path, form, head());
+    if (!opened) return about(output_name(*path), std::move(opened).error());
+  }
+  return Done{};
+}
+
+Status RepairRun::begin_reports(std::optional<Format> format) {
+  return reports_.tell([&](report::FeatureReport& report) {
+    return report.begin_document({output_name(command_.output), format});
+  });
+}
+
+Status RepairRun::end_reports(const std::vector<std::string>& notes) {
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start_;
+  return reports_.tell([&](report::FeatureReport& report) {
+    return report.end_document({notes, time.count()});
+  });
+}
+
+void RepairRun::print_notes(const Document& document) const {
+  for (const std::string& note : document.notes) {
+    std::fprintf(stderr, "watertight: %s: %s\n", printable(command_.input).c_str(),
+                 printable(note).c_str());
+  }
 }
 
 /// Whether the input, by its name, is a sequence that is written as one: it is read line by line.
@@ -179,53 +191,126 @@ bool is_stream(const RepairCommand& command) {
   return is_sequence && stays && command.surfaces != "as-solids";
 }
 
-/// Repairs a file line by line. Nothing: the file is no sequence. `at` becomes the file that an
-/// error is about.
-Result<std::optional<DocumentRepair>> repaired_lines(const RepairCommand& command,
-                                                     delaunay::EngineWorkers& workers,
-                                                     std::string& at) {
-  const auto argument = single_input(command.input);
+/// Repairs a file line by line. Nothing: the file is no sequence.
+Result<std::optional<DocumentRepair>> RepairRun::repair_lines() {
+  const auto argument = single_input(command_.input);
   if (!argument) return argument.error();
   formats::ReadOptions reading;
   reading.keep_text = true;
-  reading.surfaces = surface_rule(command.surfaces).reading;
+  reading.surfaces = surface_rule(command_.surfaces).reading;
   auto input = files::open_input(*argument, reading);
   if (!input) return std::move(input).error();
-  if (input->reader.feature_count()) return std::optional<DocumentRepair>();
-  print_notes(command, input->reader.document());
-  auto writer = files::FileWriter::open(command.output);
-  if (!writer) {
-    at = command.output;
-    return std::move(writer).error();
-  }
-  const auto write = [&](std::string_view text) {
+  formats::FeatureReader& reader = input->reader;
+  if (reader.feature_count()) return std::optional<DocumentRepair>();
+  print_notes(reader.document());
+  auto writer = files::FileWriter::open(command_.output);
+  if (!writer) return about(command_.output, std::move(writer).error());
+  const auto write = [&](std::string_view text) -> Status {
     Status written = writer->write(text);
-    if (!written) at = command.output;
-    return written;
+    return written ? std::move(written) : about(command_.output, std::move(written).error());
   };
-  auto outcome =
-      pipeline::repair_stream(input->reader, &workers, options_of(command), command.jobs, write);
+  if (Status begun = begin_reports(reader.document().format); !begun) return begun.error();
+  auto outcome = reports_.is_empty()
+                     ? pipeline::repair_stream(reader, &workers_, options_, command_.jobs, write)
+                     : pipeline::repair_and_validate(
+                           reader, &workers_, options_, validation_, write,
+                           [&](pipeline::ValidatedFeature&& feature) {
+                             return reports_.tell([&](report::FeatureReport& report) {
+                               return report.add(feature);
+                             });
+                           });
   if (!outcome) return std::move(outcome).error();
-  at = command.output;
-  if (const Status saved = writer->commit(); !saved) return saved.error();
+  if (Status ended = end_reports(reader.document().notes); !ended) return ended.error();
+  Status saved = writer->commit();
+  if (!saved) return about(command_.output, std::move(saved).error());
   return std::optional(*std::move(outcome));
 }
 
-/// Repairs a document that is read whole.
-Result<DocumentRepair> repaired_whole(const RepairCommand& command,
-                                      delaunay::EngineWorkers& workers, Exit& saved) {
-  auto document = read_to_repair(command);
-  if (!document) return std::move(document).error();
-  print_notes(command, *document);
-  auto outcome = pipeline::repair_document(*document, &workers, options_of(command),
-                                           static_cast<unsigned>(command.jobs));
-  if (!outcome) return outcome;
-  if (command.surfaces == "as-solids") {
-    const auto turned = formats::turn_surfaces_into_solids(*document);
+/// Reads and repairs the document.
+Result<pipeline::RepairedText> RepairRun::repair_document() {
+  const auto argument = single_input(command_.input);
+  if (!argument) return argument.error();
+  const auto whole = files::read_whole(*argument, {});
+  if (!whole) return whole.error();
+  formats::ReadOptions reading;
+  reading.split_features = false;
+  reading.surfaces = surface_rule(command_.surfaces).reading;
+  const auto threads = static_cast<unsigned>(command_.jobs);
+  if (const auto from = formats::detect_format(whole->name, whole->bytes)) {
+    const auto named = files::format_of_name(command_.output);
+    const Format to = named && command_.output != "-" ? *named : *from;
+    return pipeline::repair_text(whole->bytes, *from, to, reading, &workers_, options_, threads);
+  }
+  auto input = files::load_input(whole->name, whole->bytes, reading);
+  if (!input) return std::move(input).error();
+  pipeline::RepairedText repaired{std::move(input->document), {}};
+  auto outcome = pipeline::repair_document(repaired.document, &workers_, options_, threads);
+  if (!outcome) return std::move(outcome).error();
+  repaired.outcome = *std::move(outcome);
+  return repaired;
+}
+
+/// Validates the document as it is written, for the reports.
+Status RepairRun::report_on(const Document& document, const DocumentRepair& outcome) {
+  if (reports_.is_empty()) return Done{};
+  const auto format = command_.output == "-" ? Result<Format>(document.format)
+                                             : files::format_of_name(command_.output);
+  if (!format) return format.error();
+  if (Status begun = begin_reports(*format); !begun) return begun;
+  formats::ReadOptions reading;
+  reading.surfaces = surface_rule(command_.surfaces).reading;
+  const Status validated = pipeline::validate_repaired(
+      document, *format, reading, outcome, &workers_, validation_,
+      [&](pipeline::ValidatedFeature&& feature) {
+        return reports_.tell([&](report::FeatureReport& report) { return report.add(feature); });
+      });
+  return validated ? end_reports(document.notes) : validated;
+}
+
+/// Repairs a document that is read whole. Nothing: it could not be saved, and the user knows.
+Result<std::optional<DocumentRepair>> RepairRun::repair_whole() {
+  auto repaired = repair_document();
+  if (!repaired) return std::move(repaired).error();
+  auto& [document, outcome] = *repaired;
+  print_notes(document);
+  if (command_.surfaces == "as-solids") {
+    const auto turned = formats::turn_surfaces_into_solids(document);
     if (!turned) return turned.error();
   }
-  saved = save_documents({&*document, 1}, command.input, command.output);
-  return outcome;
+  const Exit saved = save_documents({&document, 1}, command_.input, command_.output);
+  if (saved != Exit::valid) return std::optional<DocumentRepair>();
+  if (Status reported = report_on(document, outcome); !reported) return reported.error();
+  return std::optional(std::move(outcome));
+}
+
+void RepairRun::print_outcome(const DocumentRepair& outcome) const {
+  const bool is_output_taken =
+      command_.output == "-" || command_.report == "-" || command_.html == "-";
+  if (is_output_taken) return;
+  if (!command_.is_quiet) {
+    for (const SolidRepair& repair : outcome.repairs) print(repair);
+  }
+  print_table(outcome);
+}
+
+Exit RepairRun::run() {
+  if (const Status opened = open_reports(); !opened) return fail(at_, opened.error());
+  std::optional<DocumentRepair> outcome;
+  if (is_stream(command_)) {
+    auto lines = repair_lines();
+    if (!lines) return fail(at_, lines.error());
+    outcome = *std::move(lines);
+  }
+  if (!outcome) {
+    auto whole = repair_whole();
+    if (!whole) return fail(at_, whole.error());
+    if (!*whole) return Exit::error;
+    outcome = *std::move(whole);
+  }
+  Exit exit = exit_of_repair(*outcome);
+  reports_.finish([&](const std::string& file, const Error& error) { exit = fail(file, error); });
+  print_outcome(*outcome);
+  return exit;
 }
 
 }  // namespace
@@ -235,32 +320,7 @@ Exit run(const RepairCommand& command) {
     return fail(command.input, {ErrorCode::invalid_argument,
                                 "the output '" + command.output + "' would replace the input"});
   }
-  delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
-  std::optional<DocumentRepair> outcome;
-  if (is_stream(command)) {
-    std::string at = command.input;
-    auto lines = repaired_lines(command, workers, at);
-    if (!lines) return fail(at, lines.error());
-    outcome = *std::move(lines);
-  }
-  if (!outcome) {
-    Exit saved = Exit::valid;
-    auto whole = repaired_whole(command, workers, saved);
-    if (!whole) return fail(command.input, whole.error());
-    if (saved != Exit::valid) return saved;
-    outcome = *std::move(whole);
-  }
-  if (!command.report.empty()) {
-    const std::string report = pipeline::repair_report_json(*outcome) + '\n';
-    const Status written = files::write_file(command.report, as_bytes(report));
-    if (!written) return fail(command.report, written.error());
-  }
-  if (command.output == "-") return exit_of_repair(*outcome);
-  if (!command.is_quiet) {
-    for (const SolidRepair& repair : outcome->repairs) print(repair);
-  }
-  print_table(*outcome);
-  return exit_of_repair(*outcome);
+  return RepairRun(command).run();
 }
 
 }  // namespace watertight::cli

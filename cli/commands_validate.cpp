@@ -3,7 +3,6 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 
 #include "base/quantity.h"
@@ -11,6 +10,7 @@
 #include "cli/findings/baseline.h"
 #include "cli/findings/explain.h"
 #include "cli/findings/finding_list.h"
+#include "cli/outputs/report_files.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
@@ -43,15 +43,6 @@ pipeline::StreamOptions options_of(const ValidateCommand& command) {
   return options;
 }
 
-std::string time_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  const std::size_t size = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return std::string(text.data(), size);
-}
-
 report::ReportHead head_of(const ValidateCommand& command, const pipeline::StreamOptions& options) {
   report::ReportHead head;
   head.program_version = command.program_version;
@@ -73,33 +64,6 @@ void note(const std::string& file, const std::string& text) {
   std::fprintf(stderr, "watertight: %s: %s\n", printable(file).c_str(), text.c_str());
 }
 
-std::string output_name(const std::string& path) { return path == "-" ? "standard output" : path; }
-
-/// One of the reports that a run writes to files.
-struct OpenReport {
-  std::unique_ptr<files::FileWriter> file;
-  std::unique_ptr<report::FeatureReport> report;
-  std::string path;
-};
-
-using ReportMaker = std::unique_ptr<report::FeatureReport> (*)(report::TextSink,
-                                                               const report::ReportHead&);
-
-template <auto make>
-std::unique_ptr<report::FeatureReport> made(report::TextSink sink, const report::ReportHead& head) {
-  return make(std::move(sink), head);
-}
-
-std::unique_ptr<report::FeatureReport> page_report(report::TextSink sink,
-                                                   const report::ReportHead& head) {
-  return report::html_report(std::move(sink), head, {});
-}
-
-std::unique_ptr<report::FeatureReport> table_report(report::TextSink sink,
-                                                    const report::ReportHead& /*head*/) {
-  return report::csv_report(std::move(sink));
-}
-
 /// A run of `watertight validate`: all files, one after the other.
 class Validation {
  public:
@@ -114,13 +78,13 @@ class Validation {
   Exit run();
 
  private:
-  /// The options that name a file for a report, with the report's maker.
-  std::array<std::pair<const std::string*, ReportMaker>, 5> outputs() const {
-    return {{{&command_.report, made<report::json_report>},
-             {&command_.geojson, made<report::geojson_report>},
-             {&command_.html, page_report},
-             {&command_.csv, table_report},
-             {&command_.sarif, made<report::sarif_report>}}};
+  /// The options that name a file for a report, with the report's form.
+  std::array<std::pair<const std::string*, ReportForm>, 5> outputs() const {
+    return {{{&command_.report, ReportForm::json},
+             {&command_.geojson, ReportForm::geojson},
+             {&command_.html, ReportForm::html},
+             {&command_.csv, ReportForm::csv},
+             {&command_.sarif, ReportForm::sarif}}};
   }
   bool has_output(std::string_view path) const {
     const auto all = outputs();
@@ -137,8 +101,6 @@ class Validation {
   Result<files::OpenedInput> open_source(const files::InputFile& source);
   Result<formats::FeatureReader> with_cavities(const files::InputFile& source);
   Result<pipeline::StreamOutcome> stream(const std::string& file, files::OpenedInput& input);
-  template <class Call>
-  Status tell_reports(const Call& call);
   void fail(const std::string& file, const Error& error) {
     complain(file, error);
     exit_ = Exit::error;
@@ -150,7 +112,7 @@ class Validation {
   delaunay::EngineWorkers workers_;
   bool is_output_taken_ = false;  // a report goes to the standard output
   bool is_quiet_ = false;
-  std::vector<OpenReport> reports_;
+  ReportFiles reports_;
   std::optional<Baseline> baseline_;
   std::size_t file_number_ = 0;  // of the file in work, from 1
   std::uint64_t omitted_ = 0;    // findings of that file that are only counted
@@ -159,11 +121,9 @@ class Validation {
   Exit exit_ = Exit::valid;
 };
 
-/// Whether a path is that of an input, or of a report that is open already.
+/// Whether a path is that of a file that the run reads.
 bool Validation::is_in_use(const std::string& path) const {
   const auto is_it = [&](const std::string& other) { return files::is_same_file(path, other); };
-  const auto is_report = [&](const OpenReport& open) { return is_it(open.path); };
-  if (std::any_of(reports_.begin(), reports_.end(), is_report)) return true;
   if (path == "-") return false;
   const auto& cavities = command_.interior_shells;
   if (!command_.baseline.empty() && is_it(command_.baseline)) return true;
@@ -173,22 +133,16 @@ bool Validation::is_in_use(const std::string& path) const {
 }
 
 bool Validation::open_reports() {
-  for (const auto& [path, make] : outputs()) {
+  for (const auto& [path, form] : outputs()) {
     if (path->empty()) continue;
-    if (is_in_use(*path)) {
-      fail(output_name(*path), {ErrorCode::invalid_argument,
-                                "a report would replace an input or another report of this run"});
+    const Status opened =
+        is_in_use(*path)
+            ? Error{ErrorCode::invalid_argument, "a report would replace an input of this run"}
+            : reports_.open(*path, form, head_of(command_, options_));
+    if (!opened) {
+      fail(output_name(*path), opened.error());
       return false;
     }
-    auto file = files::FileWriter::open(*path);
-    if (!file) {
-      fail(output_name(*path), file.error());
-      return false;
-    }
-    auto writer = std::make_unique<files::FileWriter>(*std::move(file));
-    auto sink = [to = writer.get()](std::string_view text) { return to->write(text); };
-    auto report = make(std::move(sink), head_of(command_, options_));
-    reports_.push_back({std::move(writer), std::move(report), *path});
   }
   return true;
 }
@@ -255,19 +209,6 @@ std::string Validation::note_without_solids(std::uint64_t surfaces) const {
          " were checked";
 }
 
-/// Passes a call to all reports. Errors: the first report's error, naming its file.
-template <class Call>
-Status Validation::tell_reports(const Call& call) {
-  for (OpenReport& open : reports_) {
-    Status status = call(*open.report);
-    if (status) continue;
-    Error error = std::move(status).error();
-    error.message.insert(0, output_name(open.path) + ": ");
-    return error;
-  }
-  return Done{};
-}
-
 Result<formats::FeatureReader> Validation::with_cavities(const files::InputFile& source) {
   const auto one_solid = [&](const files::InputFile& from) -> Result<Document> {
     const auto whole = files::read_whole(from, options_.certify.limits);
@@ -322,12 +263,13 @@ Result<pipeline::StreamOutcome> Validation::stream(const std::string& file,
       input.reader, &workers_, options_,
       [&](pipeline::ValidatedFeature&& feature) -> Status {
         take_feature(file, feature.inspected);
-        return tell_reports([&](report::FeatureReport& report) { return report.add(feature); });
+        return reports_.tell([&](report::FeatureReport& report) { return report.add(feature); });
       },
       [&](const Error& error) -> Status {
         summary_.add_unreadable();
         fail(file, error);
-        return tell_reports([&](report::FeatureReport& report) { return report.add_error(error); });
+        return reports_.tell(
+            [&](report::FeatureReport& report) { return report.add_error(error); });
       });
 }
 
@@ -341,7 +283,7 @@ void Validation::validate_file(const files::InputFile& source) {
   report::DocumentHead head{file, {}};
   if (input) head.format = input->reader.document().format;
   Status status =
-      tell_reports([&](report::FeatureReport& report) { return report.begin_document(head); });
+      reports_.tell([&](report::FeatureReport& report) { return report.begin_document(head); });
   report::DocumentEnd end;
   if (status && input) {
     const auto outcome = stream(file, *input);
@@ -358,16 +300,16 @@ void Validation::validate_file(const files::InputFile& source) {
   } else if (status) {
     fail(file, input.error());
     summary_.add_unreadable_file();
-    status = tell_reports(
+    status = reports_.tell(
         [&](report::FeatureReport& report) { return report.add_error(input.error()); });
   }
   end.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (status) {
-    status = tell_reports([&](report::FeatureReport& report) { return report.end_document(end); });
+    status = reports_.tell([&](report::FeatureReport& report) { return report.end_document(end); });
   }
   if (!status) {
     fail(file, status.error());
-    reports_.clear();
+    reports_.give_up();
   }
 }
 
@@ -378,11 +320,7 @@ Exit Validation::run() {
     ++file_number_;
     validate_file(input);
   }
-  for (OpenReport& open : reports_) {
-    Status status = open.report->finish();
-    if (status) status = open.file->commit();
-    if (!status) fail(output_name(open.path), status.error());
-  }
+  reports_.finish([&](const std::string& file, const Error& error) { fail(file, error); });
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!is_output_taken_) {

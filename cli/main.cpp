@@ -276,7 +276,11 @@ void add_repair(CLI::App& app, RepairCommand& command, Chosen& chosen) {
   sub->add_option("IN", command.input, "document; - for standard input")->required();
   sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
   add_remedies(*sub, "--remedies", command.remedies, command.weld_metres)->capture_default_str();
-  sub->add_option("--report", command.report, "a file that gets what was done as JSON");
+  sub->add_option("--report", command.report,
+                  "write the report on the repaired document, with what was done, as JSON");
+  sub->add_option("--html", command.html, "write that report as a page with pictures");
+  sub->add_flag("--no-times", command.leaves_times_out,
+                "reports without times: same input, same bytes");
   sub->add_option("--islands", command.most_islands,
                   "most islands of a hole for which fill looks for the best triangles")
       ->check(in_range(0, 5, "from 0 to 5"))
@@ -285,6 +289,7 @@ void add_repair(CLI::App& app, RepairCommand& command, Chosen& chosen) {
   add_surfaces(*sub, command.surfaces);
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
   add_jobs(*sub, command.jobs, "solids repaired at once");
+  command.program_version = WATERTIGHT_VERSION;
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 

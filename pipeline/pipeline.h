@@ -32,6 +32,8 @@ struct InspectedSolid {
   Inspection inspection;
   /// Present for a surface, which is judged by the rules of rings and facets and is no solid.
   std::optional<validate::SurfaceFacts> surface = {};
+  /// What became of a solid that was not valid as it was read, if solids were repaired.
+  std::optional<repair::RepairSummary> repair = {};
 };
 
 /// The number of surfaces of a feature, or of many.

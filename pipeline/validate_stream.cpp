@@ -7,7 +7,6 @@
 
 #include "pipeline/indoor/cells.h"
 #include "pipeline/instances.h"
-#include "pipeline/streaming/feature_stream.h"
 
 namespace watertight::pipeline {
 namespace {
@@ -45,7 +44,7 @@ class Stream {
     }
     const FeatureWork work = [this](std::uint64_t number, const formats::FeatureText& text,
                                     Result<Feature> feature) {
-      return validate(number, text.place, std::move(feature));
+      return validate(number, text, std::move(feature));
     };
     const auto count = stream_features(reader_, stream, work);
     if (!count) return count.error();
@@ -54,7 +53,7 @@ class Stream {
   }
 
  private:
-  Delivery validate(std::uint64_t number, const formats::FeaturePlace& place,
+  Delivery validate(std::uint64_t number, const formats::FeatureText& text,
                     Result<Feature> feature) {
     if (!feature) {
       return [this, error = std::move(feature).error()]() -> Status {
@@ -62,11 +61,15 @@ class Stream {
         return on_error_(error);
       };
     }
+    Delivery prepared = options_.prepare ? options_.prepare(text, *feature) : Delivery();
     const auto validated = std::make_shared<ValidatedFeature>(ValidatedFeature{
         number,
         inspect(*std::move(feature), workers_, certify_, options_.groups, &templates_, &cells_),
-        place});
-    return [this, validated] { return hand_on(std::move(*validated)); };
+        text.place});
+    return [this, validated, prepared = std::move(prepared)] {
+      Status status = prepared ? prepared() : Done{};
+      return status ? hand_on(std::move(*validated)) : status;
+    };
   }
 
   Status hand_on(ValidatedFeature feature) {

@@ -10,6 +10,7 @@
 #include "base/cancel.h"
 #include "formats/feature_reader.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/streaming/feature_stream.h"
 
 namespace watertight::pipeline {
 
@@ -30,6 +31,9 @@ struct StreamOptions {
   validate::GroupOptions groups;
   std::size_t threads = 1;  // threads for the features; a document of one feature uses all
   CancelPoll is_cancelled = {};
+  /// Called with each feature that was read before it is validated, from several threads at once;
+  /// may change it. The result is called before the feature is handed on.
+  std::function<Delivery(const formats::FeatureText&, Feature&)> prepare = {};
   /// Called with the numbers of features done and of bytes read, from one thread at a time.
   std::function<void(std::uint64_t, std::uint64_t)> progress = {};
 };

@@ -89,6 +89,7 @@ Result<std::vector<Triangle>> best_triangles(const EditedSolid& solid, const She
   if (!best) return std::move(best).error();
   fill.angle = best->angle;
   fill.area = best->area;
+  fill.alternatives = best->candidates;
   return std::move(best->triangles);
 }
 

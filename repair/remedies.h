@@ -55,6 +55,7 @@ struct HoleFill {
   std::string reason;      // why it is unfilled
   double angle = 0;        // "delaunay", "all": the sum of angles between triangles, in radians
   double area = 0;         // "delaunay", "all": square metres
+  std::size_t alternatives = 0;  // "delaunay", "all": the number of triangles to choose from
 };
 
 struct FillHolesOptions {

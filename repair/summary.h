@@ -25,6 +25,10 @@ struct RepairSummary {
   std::vector<HoleFill> holes;
 };
 
+inline bool is_repaired(const RepairSummary& summary) {
+  return summary.outcome == Repaired::Outcome::repaired;
+}
+
 /// Compares a repaired solid with the submitted one. Requires the repair of that solid. Cost: that
 /// of triangulating the repaired solid.
 RepairSummary summary_of(const Solid& submitted, const Repaired& repaired);

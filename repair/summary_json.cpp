@@ -27,6 +27,7 @@ void write_hole(JsonText& json, const HoleFill& hole) {
   json.key("facets").value(std::uint64_t{hole.facets}).key("method").value(hole.method);
   if (hole.method == "delaunay" || hole.method == "all") {
     json.key("angle").value(hole.angle).key("area").value(hole.area);
+    json.key("alternatives").value(std::uint64_t{hole.alternatives});
   }
   if (!hole.reason.empty()) json.key("reason").value(hole.reason);
   json.close('}');

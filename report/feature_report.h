@@ -30,6 +30,8 @@ struct ReportHead {
   bool also_tolerant = false;           // CertifyOptions::also_tolerant
   double tolerant_snap_metres = 0.001;  // CertifyOptions::tolerant_snap_metres
   std::string surfaces;                 // the rule for surfaces, "" for `check`
+  /// How the document was repaired before; absent if it was not.
+  std::optional<repair::RepairOptions> repair = {};
 };
 
 /// The facts about a document that are known before its features.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/json_text.h"
+#include "repair/summary_json.h"
 #include "report/feature_report.h"
 #include "report/place.h"
 #include "report/tally.h"
@@ -83,6 +84,13 @@ void write_surface_counts(JsonText& json, const pipeline::SurfaceCounts& surface
   json.key("with_findings").value(surfaces.with_findings).close('}');
 }
 
+void write_remedies(JsonText& json, const repair::RepairOptions& options) {
+  json.key("remedies").open('[');
+  for (const repair::Remedy remedy : options.remedies) json.value(repair::to_string(remedy));
+  json.close(']').key("weld_tol").value(options.weld_metres);
+  json.key("islands").value(std::uint64_t{options.most_islands});
+}
+
 void write_primitive(JsonText& json, const pipeline::InspectedSolid& solid, bool has_times) {
   const Report& report = solid.inspection.report;
   json.open('{').key("id").value(solid_id(solid.source));
@@ -110,6 +118,7 @@ void write_primitive(JsonText& json, const pipeline::InspectedSolid& solid, bool
   write_ladder(json, report, has_times);
   if (solid.surface) write_surface(json, *solid.surface);
   if (report.measures) json.key("measures").raw(validate::report_measures_json(*report.measures));
+  if (solid.repair) json.key("repair").raw(repair::summary_json(*solid.repair));
   if (has_times) json.key("seconds").value(report.seconds);
   json.close('}');
 }
@@ -230,7 +239,9 @@ class JsonReport final : public FeatureReport {
     json.key("strict").value(head_.is_strict).key("tolerant").value(head_.also_tolerant);
     if (head_.also_tolerant) json.key("tolerant_snap_tol").value(head_.tolerant_snap_metres);
     if (!head_.surfaces.empty()) json.key("surfaces").value(head_.surfaces);
-    json.key("rule_set").value(int{head_.acceptance.rule_set}).close('}');
+    json.key("rule_set").value(int{head_.acceptance.rule_set});
+    if (head_.repair) write_remedies(json, *head_.repair);
+    json.close('}');
   }
 
   /// The members after the features, with a leading comma.
@@ -249,6 +260,10 @@ class JsonReport final : public FeatureReport {
     json.close('}').key("findings_omitted").value(tally_.omitted());
     write_codes(json, "first_level", tally_.first_level());
     write_surface_counts(json, tally_.surfaces());
+    if (head_.repair) {
+      json.key("repairs").open('{').key("repaired").value(tally_.repairs().repaired);
+      json.key("left").value(tally_.repairs().left).close('}');
+    }
     write_strings(json, "notes", end.notes);
     if (!head_.time.empty()) json.key("seconds").value(end.seconds);
     json.key("validity").value(tally_.is_valid());

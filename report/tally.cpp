@@ -55,6 +55,7 @@ void Tally::add(const pipeline::InspectedFeature& feature) {
   for (const pipeline::InspectedSolid& solid : feature.solids) {
     const Report& report = solid.inspection.report;
     if (!solid.surface) count(solids_, solid.source.geometry_type, report.verdict);
+    if (solid.repair) ++(is_repaired(*solid.repair) ? repairs_.repaired : repairs_.left);
     omitted_ += report.findings_omitted;
     first_level_.insert(report.first_level.begin(), report.first_level.end());
     for (const Finding& finding : report.findings) add_finding(finding);

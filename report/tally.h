@@ -21,6 +21,12 @@ struct VerdictCount {
   void add(Verdict verdict);
 };
 
+/// The solids that were not valid as they were read, of a document that was repaired.
+struct RepairCount {
+  std::uint64_t repaired = 0;
+  std::uint64_t left = 0;  // as they were
+};
+
 class Tally {
  public:
   void add(const pipeline::InspectedFeature& feature);
@@ -38,6 +44,7 @@ class Tally {
   const std::set<int>& first_level() const { return first_level_; }
   /// The surfaces, which `solids` does not count.
   const pipeline::SurfaceCounts& surfaces() const { return surfaces_; }
+  const RepairCount& repairs() const { return repairs_; }
   std::uint64_t unreadable() const { return unreadable_; }
   std::uint64_t omitted() const { return omitted_; }
   /// The worst verdict of all features; at least undecided when something could not be read.
@@ -50,6 +57,7 @@ class Tally {
   std::map<std::string, VerdictCount> features_;  // by type of the feature
   std::map<std::string, VerdictCount> solids_;
   pipeline::SurfaceCounts surfaces_;
+  RepairCount repairs_;
   std::map<int, std::uint64_t> findings_;
   std::set<int> errors_;
   std::set<int> warnings_;

@@ -33,20 +33,6 @@ struct Draft {
 // The most bytes of SubmittedSolid::unreadable, which may repeat long gml:ids.
 constexpr std::size_t kLongestReason = 512;
 
-// Reads the matrix "1 0 0 0 ...", row by row. The placement's shift is that of the matrix alone.
-Result<geometry::Placement> read_placement(std::string_view text) {
-  std::vector<GridNumber> numbers;
-  for (std::size_t at = 0; at < text.size() && numbers.size() <= kMatrixSize;) {
-    const std::size_t begin = text.find_first_not_of(" \t\r\n", at);
-    if (begin == std::string_view::npos) break;
-    at = std::min(text.find_first_of(" \t\r\n", begin), text.size());
-    auto exact = exact_number(text.substr(begin, at - begin));
-    if (!exact) return std::move(exact).error();
-    numbers.push_back(exact->value);
-  }
-  return placement_of_matrix(numbers, {});
-}
-
 /// A geometry property that is a surface.
 struct SurfaceDraft {
   Index node = kNone;
@@ -55,8 +41,10 @@ struct SurfaceDraft {
 
 class GmlReader {
  public:
-  GmlReader(const GmlModel& model, std::uint64_t byte_count, const ReadOptions& options)
+  GmlReader(const GmlModel& model, std::uint64_t byte_count, const ReadOptions& options,
+            std::vector<GmlSolidElements>* elements = nullptr)
       : model_(model),
+        elements_(elements),
         limits_(options.limits),
         surfaces_(options.surfaces),
         shapes_(model, byte_count, options.limits),
@@ -484,6 +472,8 @@ class GmlReader {
       ring_uses_[node] = {solids_, ring, is_reversed, is_y_first_};
     }
     ++solids_;
+    if (elements_ == nullptr) return;
+    elements_->push_back({solid.facets, solid.members, solid.rings, is_y_first_});
   }
 
   Status place(Draft& draft, const geometry::LatticePoints& points, Feature& feature) {
@@ -545,6 +535,7 @@ class GmlReader {
   }
 
   const GmlModel& model_;
+  std::vector<GmlSolidElements>* elements_;  // of the solids, in order; null: nobody asks
   const Limits& limits_;
   const Surfaces surfaces_;
   GmlShapes shapes_;
@@ -592,6 +583,16 @@ Result<Document> read_gml(ByteView bytes, const ReadOptions& options) {
   const auto texts = ring_texts(*model, reader.ring_uses(), bytes);
   document->framing = keep_with_rings(bytes, texts, solids_of(*document));
   return document;
+}
+
+Result<GmlElements> read_gml_elements(ByteView bytes, const ReadOptions& options) {
+  auto model = read_gml_model(bytes, options.limits);
+  if (!model) return std::move(model).error();
+  GmlElements elements{*std::move(model), {}, {}};
+  auto document = GmlReader(elements.model, bytes.size(), options, &elements.solids).read();
+  if (!document) return std::move(document).error();
+  elements.document = *std::move(document);
+  return elements;
 }
 
 }  // namespace watertight::formats

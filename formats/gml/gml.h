@@ -6,11 +6,13 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "base/bytes.h"
 #include "base/limits.h"
 #include "base/result.h"
 #include "formats/document.h"
+#include "formats/gml/shapes.h"
 
 namespace watertight::formats {
 
@@ -19,6 +21,23 @@ namespace watertight::formats {
 /// is one. Cost: n log n in the gml:ids, else linear; xlinks may not repeat more geometry than a
 /// document of this size could write out.
 Result<Document> read_gml(ByteView bytes, const ReadOptions& options);
+
+/// The elements of a solid.
+struct GmlSolidElements {
+  std::vector<Index> facets;       // the node of each facet
+  std::vector<GmlMember> members;  // one for each facet
+  std::vector<GmlRing> rings;      // one for each ring of the solid
+  bool is_y_first = false;         // positions are written y, x, z
+};
+
+/// A document with the elements of its solids, in the order of the solids of all features.
+struct GmlElements {
+  GmlModel model;
+  std::vector<GmlSolidElements> solids;
+  Document document;
+};
+/// Reads a document as read_gml() does, without its text.
+Result<GmlElements> read_gml_elements(ByteView bytes, const ReadOptions& options);
 
 /// The EPSG code of an srsName, 0 when there is none. Known are "EPSG:25832", URNs and URLs of the
 /// OGC (of a compound system the first, horizontal code), and the codes of the German survey

@@ -127,7 +127,8 @@ class GmlBuilder : public XmlHandler {
     Index node = kNone;      // the innermost open geometry
     Index implicit = kNone;  // index into GmlModel::implicits, in an implicit geometry
     Index system = kNone;
-    Index object_frame = kNone;  // index into frames_ of the element's object
+    Index object_frame = kNone;     // index into frames_ of the element's object
+    std::uint64_t property_at = 0;  // where the innermost property of a geometry starts, bytes
   };
 
   struct OpenObject {
@@ -338,9 +339,10 @@ class GmlBuilder : public XmlHandler {
     return frame.node;
   }
 
-  Index add_link(Index owner, GmlRole role, Index node, std::string_view href, XmlPlace place) {
+  Index add_link(Index owner, GmlRole role, Index node, std::string_view href, XmlPlace place,
+                 std::uint64_t property_at = 0) {
     const auto number = static_cast<Index>(model_.links.size());
-    model_.links.push_back({role, node, keep(href), kNone, place});
+    model_.links.push_back({role, node, keep(href), kNone, place, property_at});
     if (owner == kNone) return number;
     GmlNode& its = model_.nodes[owner];
     if (its.first_link == kNone) {
@@ -370,11 +372,12 @@ class GmlBuilder : public XmlHandler {
     const std::string_view href = reference(element);
     Frame frame = frame_below(parent, FrameKind::property);
     frame.role = *role;
+    frame.property_at = element.place.byte;
     frame.has_reference = !href.empty();
     frames_.push_back(frame);
     if (href.empty()) return Done{};
     if (auto status = room_for_more(element); !status) return status;
-    add_link(parent.node, *role, kNone, href, element.place);
+    add_link(parent.node, *role, kNone, href, element.place, element.place.byte);
     return Done{};
   }
 
@@ -383,7 +386,7 @@ class GmlBuilder : public XmlHandler {
     const bool is_gml = is_gml_space(element.space);
     const auto kind = is_gml ? geometry_kind(element.name) : std::nullopt;
     const Index node = add_node(element, kind.value_or(GmlKind::unread), parent);
-    add_link(parent.node, parent.role, node, {}, element.place);
+    add_link(parent.node, parent.role, node, {}, element.place, parent.property_at);
     return Done{};
   }
 

@@ -45,8 +45,9 @@ struct GmlLink {
   GmlRole role = GmlRole::member;
   Index node = kNone;  // kNone: `reference` holds the href, or the property is empty
   TextSpan reference;
-  Index next = kNone;  // the next property of the same element
-  XmlPlace place;
+  Index next = kNone;             // the next property of the same element
+  XmlPlace place;                 // of the value; of the property if that is a reference
+  std::uint64_t property_at = 0;  // where the property of a geometry starts, bytes
 };
 
 struct GmlNode {

@@ -6,6 +6,7 @@
 
 #include "formats/gml/elements.h"
 #include "formats/gml/gml.h"
+#include "formats/surface.h"
 #include "formats/text/numbers.h"
 #include "geometry/crs/crs.h"
 
@@ -146,7 +147,7 @@ Status GmlShapes::shell_of(Index node, GmlSolid& solid, GmlPositions& positions)
 // that were not left.
 Status GmlShapes::follow(std::vector<Step>& path, Index first, GmlSolid& solid,
                          GmlPositions& positions) {
-  auto status = surface(path, first, false, solid, positions);
+  auto status = surface(path, first, false, {}, solid, positions);
   while (status && !path.empty()) {
     Step& step = path.back();
     if (step.link == kNone) {
@@ -156,29 +157,34 @@ Status GmlShapes::follow(std::vector<Step>& path, Index first, GmlSolid& solid,
     }
     const GmlLink& next = model_.links[step.link];
     const bool is_reversed = step.is_reversed;
+    const bool is_collection = model_.nodes[step.node].kind == GmlKind::surfaces;
+    const GmlMember member = is_collection ? GmlMember{step.link, is_reversed} : step.member;
     step.link = next.next;
     auto node = resolve(next);
     if (!node) return std::move(node).error();
-    status = surface(path, *node, is_reversed, solid, positions);
+    status = surface(path, *node, is_reversed, member, solid, positions);
   }
   return status;
 }
 
 // Adds the facet of a polygon; puts other surfaces on the path, which goes on with their members.
-Status GmlShapes::surface(std::vector<Step>& path, Index node, bool is_reversed, GmlSolid& solid,
-                          GmlPositions& positions) {
+Status GmlShapes::surface(std::vector<Step>& path, Index node, bool is_reversed, GmlMember member,
+                          GmlSolid& solid, GmlPositions& positions) {
   if (auto status = check(node); !status) return status;
   const GmlNode& element = model_.nodes[node];
   if (!is_surface(element.kind)) {
     return wrong(element.place, title(node) + " where a surface is expected");
   }
-  if (element.kind == GmlKind::polygon) return facet(node, is_reversed, solid, positions);
+  if (element.kind == GmlKind::polygon) {
+    solid.members.push_back(member);
+    return facet(node, is_reversed, solid, positions);
+  }
   const bool is_orientable = element.kind == GmlKind::orientable;
   if (is_orientable && element.first_link != element.last_link) {
     return wrong(element.place, title(node) + " has several base surfaces");
   }
   if (!enter(node)) return wrong(element.place, title(node) + " contains itself by xlink");
-  path.push_back({node, element.first_link, is_reversed != element.is_reversed});
+  path.push_back({node, element.first_link, is_reversed != element.is_reversed, member});
   return Done{};
 }
 
@@ -290,6 +296,19 @@ Status GmlShapes::close_ring(const GmlNode& ring, std::size_t first, GmlSolid& s
   }
   solid.unclosed_rings.push_back(static_cast<Index>(solid.arrays.ring_offsets.size() - 1));
   return Done{};
+}
+
+Result<geometry::Placement> read_placement(std::string_view text) {
+  std::vector<GridNumber> numbers;
+  for (std::size_t at = 0; at < text.size() && numbers.size() <= kMatrixSize;) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n", at);
+    if (begin == std::string_view::npos) break;
+    at = std::min(text.find_first_of(" \t\r\n", begin), text.size());
+    auto exact = exact_number(text.substr(begin, at - begin));
+    if (!exact) return std::move(exact).error();
+    numbers.push_back(exact->value);
+  }
+  return placement_of_matrix(numbers, {});
 }
 
 }  // namespace watertight::formats

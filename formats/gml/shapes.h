@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "formats/gml/model.h"
 #include "geometry/lattice/lattice.h"
+#include "geometry/placement.h"
 #include "geometry/solid.h"
 
 namespace watertight::formats {
@@ -23,14 +24,21 @@ struct GmlRing {
   bool is_reversed = false;
 };
 
+/// How a facet got into its shell: a property of a collection of surfaces.
+struct GmlMember {
+  Index link = kNone;        // kNone: the shell is the polygon itself
+  bool is_reversed = false;  // the collection is passed in the opposite orientation
+};
+
 /// A solid whose ring vertices are indices into GmlPositions::values, counted from
 /// `first_position`, each used once.
 struct GmlSolid {
   SolidArrays arrays;
   std::size_t first_position = 0;
   std::vector<Index> unclosed_rings;
-  std::vector<Index> facets;   // the node of each facet
-  std::vector<GmlRing> rings;  // one for each ring of `arrays`
+  std::vector<Index> facets;       // the node of each facet
+  std::vector<GmlMember> members;  // one for each facet
+  std::vector<GmlRing> rings;      // one for each ring of `arrays`
   Index system = kNone;
   XmlPlace place;
 };
@@ -84,13 +92,14 @@ class GmlShapes {
     Index node;
     Index link;  // the next link to follow
     bool is_reversed;
+    GmlMember member;  // the property through which the element got into its shell
   };
 
   Status shell(const GmlLink& link, GmlSolid& solid, GmlPositions& positions);
   Status shell_of(Index node, GmlSolid& solid, GmlPositions& positions);
   Status follow(std::vector<Step>& path, Index first, GmlSolid& solid, GmlPositions& positions);
-  Status surface(std::vector<Step>& path, Index node, bool is_reversed, GmlSolid& solid,
-                 GmlPositions& positions);
+  Status surface(std::vector<Step>& path, Index node, bool is_reversed, GmlMember member,
+                 GmlSolid& solid, GmlPositions& positions);
   Status facet(Index node, bool is_reversed, GmlSolid& solid, GmlPositions& positions);
   Status ring(const GmlLink& link, bool is_reversed, GmlSolid& solid, GmlPositions& positions);
   Status read_positions(const GmlNode& ring, GmlPositions& positions);
@@ -107,5 +116,9 @@ class GmlShapes {
   std::vector<std::uint32_t> srids_;
   std::vector<double> poles_;
 };
+
+/// Reads the matrix "1 0 0 0 ...", row by row. The placement's shift is that of the matrix alone.
+/// Errors: malformed.
+Result<geometry::Placement> read_placement(std::string_view text);
 
 }  // namespace watertight::formats

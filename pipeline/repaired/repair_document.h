@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <string>
 #include <vector>
 
 #include "pipeline/repaired/solid_repair.h"
@@ -32,7 +31,19 @@ Result<std::vector<SolidRepair>> repair_feature(Feature& feature, delaunay::Engi
 Result<DocumentRepair> repair_document(Document& document, delaunay::EngineWorkers* workers,
                                        const repair::RepairOptions& options, unsigned threads);
 
-/// The outcome as UTF-8 JSON (docs/report.md, "Repairs"). Deterministic.
-std::string repair_report_json(const DocumentRepair& outcome);
+/// A document after its repair.
+struct RepairedText {
+  Document document;
+  DocumentRepair outcome;
+};
+
+/// Reads a document that is to be written as `to`, and repairs it as repair_document() does. GML
+/// that is to be written as GML is changed as a text (formats/gml/edits/edit_gml.h): the document
+/// has notes about repaired solids that its text cannot have; these count as not repaired. Errors:
+/// those of read_to_convert(), repair_document() and edit_gml(). Cost: that of reading, for GML of
+/// reading four times, and of repair::repair().
+Result<RepairedText> repair_text(ByteView text, Format from, Format to,
+                                 formats::ReadOptions reading, delaunay::EngineWorkers* workers,
+                                 const repair::RepairOptions& options, unsigned threads);
 
 }  // namespace watertight::pipeline

@@ -8,6 +8,7 @@
 
 #include "formats/feature_reader.h"
 #include "pipeline/repaired/repair_document.h"
+#include "pipeline/validate_stream.h"
 
 namespace watertight::pipeline {
 
@@ -22,5 +23,13 @@ Result<DocumentRepair> repair_stream(formats::FeatureReader& reader,
                                      delaunay::EngineWorkers* workers,
                                      const repair::RepairOptions& options, std::size_t threads,
                                      const TextSink& sink);
+
+/// The same, and validates each feature as it is written, by `validation`. `on_feature` gets them
+/// in order, with what became of their solids. Cost: that of validate_stream() on top.
+Result<DocumentRepair> repair_and_validate(formats::FeatureReader& reader,
+                                           delaunay::EngineWorkers* workers,
+                                           const repair::RepairOptions& options,
+                                           const StreamOptions& validation, const TextSink& sink,
+                                           const FeatureSink& on_feature);
 
 }  // namespace watertight::pipeline

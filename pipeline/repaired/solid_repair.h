@@ -16,7 +16,7 @@ struct SolidRepair {
   std::string feature;
   repair::RepairSummary summary;
 
-  bool is_repaired() const { return summary.outcome == repair::Repaired::Outcome::repaired; }
+  bool is_repaired() const { return repair::is_repaired(summary); }
 };
 
 }  // namespace watertight::pipeline

@@ -75,10 +75,9 @@ Status Ingestion::add(formats::FeatureReader& reader) {
   if (Status found = look_up_collection(); !found) return found;
   const Format format = reader.document().format;
   if (options_.repair && format == Format::gml) {
-    return Error{
-        ErrorCode::unsupported,
-        "GML is not repaired while it is stored; `watertight repair` and POST /repair make "
-        "a city model of it that is"};
+    return Error{ErrorCode::unsupported,
+                 "GML is not repaired while it is stored; repair it by `watertight repair` or POST "
+                 "/repair first"};
   }
   auto shared = shared_part(reader.document(), options_.contract);
   if (!shared) return std::move(shared).error();

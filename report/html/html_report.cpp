@@ -6,6 +6,7 @@
 #include "report/html/footprints.h"
 #include "report/html/html_page.h"
 #include "report/html/html_rows.h"
+#include "report/html/repair_rows.h"
 #include "report/tally.h"
 #include "validate/finding_kinds.h"
 
@@ -32,6 +33,7 @@ class HtmlReport final : public FeatureReport {
     footprints_.add(feature.inspected);
     findings_ += findings_of(feature.inspected).size();
     rows_.add(file_, feature.inspected);
+    repairs_.add(feature.inspected);
     return Done{};
   }
 
@@ -51,7 +53,7 @@ class HtmlReport final : public FeatureReport {
   }
 
   Status finish() override {
-    for (const std::string& part : {top(), cards(), table_top()}) {
+    for (const std::string& part : {top(), cards(), repairs_.html(tally_.repairs()), table_top()}) {
       const Status status = sink_(part);
       if (!status) return status;
     }
@@ -74,6 +76,7 @@ class HtmlReport final : public FeatureReport {
   FindingRows rows_;
   Tally tally_;
   Footprints footprints_;
+  RepairRows repairs_;
   std::string file_;
   std::vector<std::string> files_;
   std::vector<std::string> notes_;
@@ -117,7 +120,7 @@ std::string HtmlReport::banner() const {
 }
 
 std::string HtmlReport::top() const {
-  std::string title = "Validation report";
+  std::string title = head_.repair ? "Repair report" : "Validation report";
   if (documents_ == 1) append(title, {": ", files_.front()});
   std::string html = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">";
   html += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
@@ -196,6 +199,7 @@ std::string HtmlReport::settings_card() const {
                   : "constrained Delaunay tetrahedralization");
   if (head_.is_strict) append_fact(html, "strict", "canonical triangles only");
   append_fact(html, "rule set", std::to_string(head_.acceptance.rule_set));
+  if (head_.repair) append_fact(html, "remedies", remedies_text(*head_.repair));
   html += "</dl></section>";
   return html;
 }

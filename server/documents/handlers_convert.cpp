@@ -8,6 +8,7 @@
 #include "formats/surface.h"
 #include "pipeline/container.h"
 #include "pipeline/repaired/repair_document.h"
+#include "server/documents/report_answer.h"
 #include "server/documents/rules.h"
 #include "server/documents/submission.h"
 
@@ -30,6 +31,19 @@ constexpr std::array<WrittenFormat, 6> kWritten{
 
 /// The most bytes of notes in the header of an answer.
 constexpr std::size_t kMostNoteBytes = 4000;
+
+// The format in which only documents of the same format are written, by POST /repair.
+constexpr WrittenFormat kWrittenGml{"gml", "application/gml+xml", Format::gml};
+
+/// Whether a client wants a repaired GML document as GML.
+bool is_gml_wanted(const RoutedRequest& request) {
+  if (const std::string* named = request.target.parameter("to")) return *named == "gml";
+  std::vector<std::string_view> offers;
+  for (const WrittenFormat& format : kWritten) offers.push_back(format.type);
+  offers.push_back(kWrittenGml.type);
+  const auto chosen = negotiate(request.request.header("accept"), offers);
+  return chosen && *chosen == kWritten.size();
+}
 
 /// The format that a client wants; nothing if there is none such.
 std::optional<WrittenFormat> wanted_format(const RoutedRequest& request) {
@@ -81,25 +95,30 @@ Result<Document> only_document(const RoutedRequest& request) {
                                            " documents; `watertight decode` writes each"};
 }
 
-/// Whether a client wants to know what a repair does rather than the document.
-bool is_report_wanted(const RoutedRequest& request) {
-  if (const std::string* named = request.target.parameter("to")) return *named == "report";
+/// The kind of report that a client wants to have of a repair; nothing if it wants the document.
+std::optional<ReportKind> wanted_report(const RoutedRequest& request) {
+  if (const std::string* named = request.target.parameter("to")) {
+    if (*named == "report") return ReportKind::json;
+    return *named == "html" ? std::optional(ReportKind::html) : std::nullopt;
+  }
   std::vector<std::string_view> offers;
   for (const WrittenFormat& format : kWritten) offers.push_back(format.type);
   offers.push_back(kJson);
+  offers.push_back(kHtml);
   const auto chosen = negotiate(request.request.header("accept"), offers);
-  return chosen && *chosen == kWritten.size();
+  if (!chosen || *chosen < kWritten.size()) return std::nullopt;
+  return *chosen == kWritten.size() ? ReportKind::json : ReportKind::html;
 }
 
 Error cancelled() { return {ErrorCode::cancelled, "the request was cancelled"}; }
 
 /// The answer 422 to a document with solids that no remedy mended.
-Response refused_repair(const pipeline::DocumentRepair& outcome) {
+Response refused_repair(const Response& report) {
   Problem problem;
   problem.status = 422;
   problem.kind = "invalid-solids";
   problem.detail = "the document has solids that the remedies did not make valid";
-  problem.extension = "{\"report\":" + pipeline::repair_report_json(outcome) + "}";
+  problem.extension = "{\"report\":" + report.body + "}";
   return to_response(problem);
 }
 
@@ -120,33 +139,41 @@ Response post_convert(const RoutedRequest& request) {
 }
 
 Response post_repair(const RoutedRequest& request) {
-  const bool wants_report = is_report_wanted(request);
-  const auto wanted = wants_report ? std::optional(kWritten[0]) : wanted_format(request);
+  auto report = wanted_report(request);
+  auto wanted = report ? std::optional(kWritten[0]) : wanted_format(request);
+  if (is_gml_wanted(request)) wanted = kWrittenGml;
   if (!wanted) return refuse_written_formats();
   pipeline::IngestOptions rules = ingest_options(request.service, request.is_cancelled);
   Status read = read_rules(request.target, rules);
-  repair::RepairOptions options;
-  options.certify = rules.certify;
-  if (read) read = read_remedies(request.target, "remedies", options);
+  rules.repair.emplace().certify = rules.certify;
+  if (read) read = read_remedies(request.target, "remedies", *rules.repair);
   if (!read) return to_response(to_problem(read.error()));
   const std::string* invalid = request.target.parameter("invalid");
   if (invalid != nullptr && *invalid != "keep" && *invalid != "refuse") {
     return refuse(400, "invalid-argument", "invalid is keep or refuse");
   }
-  Conversion conversion = read_conversion(request, wanted->format, formats::Surfaces::ignore, true);
-  if (conversion.problem) return to_response(*conversion.problem);
+  const BodyFormat body = body_format(request);
+  if (body.problem) return to_response(*body.problem);
+  // A report without a wish for a format is about the document as it comes.
+  const Format to = report && body.format == Format::gml ? Format::gml : wanted->format;
+  if (to == Format::gml && body.format != Format::gml) {
+    return refuse(406, "not-acceptable", "only GML is written as GML");
+  }
   const auto threads = static_cast<unsigned>(request.service.options.threads_per_request);
-  const auto outcome =
-      pipeline::repair_document(*conversion.document, request.service.workers, options, threads);
+  const auto repaired = pipeline::repair_text(as_bytes(request.request.body), body.format, to,
+                                              {request.service.options.limits},
+                                              request.service.workers, *rules.repair, threads);
   if (request.is_cancelled && request.is_cancelled()) return to_response(to_problem(cancelled()));
-  if (!outcome) return to_response(problem_of_body(outcome.error()));
-  if (invalid != nullptr && *invalid == "refuse" && !outcome->is_all_valid()) {
-    return refused_repair(*outcome);
-  }
-  if (wants_report) {
-    return {200, std::string(kJson), pipeline::repair_report_json(*outcome) + "\n", {}};
-  }
-  return converted(*conversion.document, *wanted);
+  if (!repaired) return to_response(problem_of_body(repaired.error()));
+  const auto& [document, outcome] = *repaired;
+  const bool is_refused = invalid != nullptr && *invalid == "refuse" && !outcome.is_all_valid();
+  if (is_refused) report = ReportKind::json;
+  if (!report) return converted(document, *wanted);
+  ReportAnswer answer(request.service, *report, rules, "ignore");
+  const Status judged = answer.judge_repaired(document, to, outcome);
+  if (!judged) return to_response(problem_of_body(judged.error()));
+  Response response = std::move(answer).finish();
+  return is_refused && response.status == 200 ? refused_repair(response) : response;
 }
 
 Response post_encode(const RoutedRequest& request) {

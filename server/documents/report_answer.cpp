@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "pipeline/repaired/validate_repaired.h"
 #include "pipeline/validate_stream.h"
 #include "server/metrics/metrics.h"
 
@@ -86,6 +87,7 @@ ReportAnswer::ReportAnswer(const Service& service, ReportKind kind,
   head.overlap_metres = options.groups.overlap_metres;
   head.is_strict = options.certify.ladder.strict;
   head.surfaces = surfaces;
+  head.repair = options.repair;
   report_ = make_report(
       kind,
       [this, longest = service.options.longest_report](std::string_view text) -> Status {
@@ -100,7 +102,7 @@ ReportAnswer::ReportAnswer(const Service& service, ReportKind kind,
       std::move(head));
 }
 
-Status ReportAnswer::judge(formats::FeatureReader& reader, const std::string& file) {
+pipeline::StreamOptions ReportAnswer::validation() const {
   pipeline::StreamOptions stream;
   stream.certify = options_.certify;
   stream.groups = options_.groups;
@@ -108,17 +110,33 @@ Status ReportAnswer::judge(formats::FeatureReader& reader, const std::string& fi
   stream.groups.cancel = options_.certify.ladder.cancel;
   stream.threads = options_.threads;
   stream.is_cancelled = options_.is_cancelled;
+  return stream;
+}
+
+Status ReportAnswer::add(const pipeline::ValidatedFeature& feature) {
+  count(service_.metrics, feature.inspected);
+  return report_->add(feature);
+}
+
+Status ReportAnswer::judge(formats::FeatureReader& reader, const std::string& file) {
   Status status = report_->begin_document({file, reader.document().format});
   if (!status) return status;
   const auto outcome = pipeline::validate_stream(
-      reader, service_.workers, stream,
-      [&](pipeline::ValidatedFeature&& feature) {
-        count(service_.metrics, feature.inspected);
-        return report_->add(feature);
-      },
+      reader, service_.workers, validation(),
+      [&](pipeline::ValidatedFeature&& feature) { return add(feature); },
       [](const Error& error) -> Status { return error; });
   if (!outcome) return outcome.error();
   return report_->end_document({reader.document().notes, 0});
+}
+
+Status ReportAnswer::judge_repaired(const Document& document, Format format,
+                                    const pipeline::DocumentRepair& outcome) {
+  Status status = report_->begin_document({"request body", format});
+  if (!status) return status;
+  status = pipeline::validate_repaired(
+      document, format, {options_.certify.limits}, outcome, service_.workers, validation(),
+      [&](pipeline::ValidatedFeature&& feature) { return add(feature); });
+  return status ? report_->end_document({document.notes, 0}) : std::move(status);
 }
 
 Response ReportAnswer::finish() && {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "formats/feature_reader.h"
+#include "pipeline/repaired/repair_document.h"
 #include "report/feature_report.h"
 #include "server/handlers.h"
 
@@ -37,10 +38,18 @@ class ReportAnswer {
   /// call is allowed.
   Status judge(formats::FeatureReader& reader, const std::string& file);
 
+  /// Judges a repaired document as it is written in a format. Errors: those of validate_repaired();
+  /// limit_exceeded as above.
+  Status judge_repaired(const Document& document, Format format,
+                        const pipeline::DocumentRepair& outcome);
+
   /// The answer, or the problem with it.
   Response finish() &&;
 
  private:
+  pipeline::StreamOptions validation() const;
+  Status add(const pipeline::ValidatedFeature& feature);
+
   const Service& service_;
   const pipeline::IngestOptions& options_;
   Response response_;

@@ -291,26 +291,31 @@ std::string_view media_type_of(Format format) {
   return "application/octet-stream";
 }
 
-Conversion read_conversion(const RoutedRequest& request, std::optional<Format> to,
-                           formats::Surfaces surfaces, bool keeps_city_text) {
-  Conversion conversion;
+BodyFormat body_format(const RoutedRequest& request) {
+  BodyFormat body;
   const auto stated = stated_format(request, AcceptedFormats::all);
   if (!stated) {
-    conversion.problem = unsupported_type(AcceptedFormats::all);
-    return conversion;
+    body.problem = unsupported_type(AcceptedFormats::all);
+    return body;
   }
-  const std::string& body = request.request.body;
-  conversion.problem = take_memory(request, body.size(), conversion.memory);
+  body.problem = take_memory(request, request.request.body.size(), body.memory);
+  if (!body.problem) body.format = format_of_content(*stated, request.request.body);
+  return body;
+}
+
+Conversion read_conversion(const RoutedRequest& request, std::optional<Format> to,
+                           formats::Surfaces surfaces) {
+  BodyFormat body = body_format(request);
+  Conversion conversion{std::move(body.memory), {}, std::move(body.problem)};
   if (conversion.problem) return conversion;
   formats::ReadOptions options;
   options.limits = request.service.options.limits;
   options.split_features = false;
   options.surfaces = surfaces;
-  const Format from = format_of_content(*stated, body);
-  const bool is_city_model = from == Format::city_json || from == Format::city_json_seq;
-  options.keep_text = !to || (keeps_city_text && is_city_model);
-  auto document = to ? pipeline::read_to_convert(as_bytes(body), from, *to, options)
-                     : formats::read_document(as_bytes(body), from, options);
+  options.keep_text = !to;
+  const ByteView bytes = as_bytes(request.request.body);
+  auto document = to ? pipeline::read_to_convert(bytes, body.format, *to, options)
+                     : formats::read_document(bytes, body.format, options);
   if (document) {
     conversion.document = *std::move(document);
   } else {

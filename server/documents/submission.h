@@ -35,6 +35,15 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
                            const std::string& header,
                            formats::Surfaces surfaces = formats::Surfaces::ignore);
 
+/// The memory for a body and its format; or the problem with it.
+struct BodyFormat {
+  std::unique_ptr<BudgetShare> memory;
+  Format format = Format::city_json;
+  std::optional<Problem> problem;
+};
+/// Any format is accepted.
+BodyFormat body_format(const RoutedRequest& request);
+
 /// A document that is read whole, to be written in another form; or the problem with it.
 struct Conversion {
   std::unique_ptr<BudgetShare> memory;
@@ -43,10 +52,8 @@ struct Conversion {
 };
 /// Reads the document in a body, of any format, to write it as `to`; nothing: with its text, to be
 /// written as it was.
-/// With `keeps_city_text` the text of city models is kept too, so that their features can be
-/// edited.
 Conversion read_conversion(const RoutedRequest& request, std::optional<Format> to,
-                           formats::Surfaces surfaces, bool keeps_city_text = false);
+                           formats::Surfaces surfaces);
 
 /// The media types of bodies whose features can be stored, with commas between them.
 std::string storable_types();

@@ -32,9 +32,12 @@ TEST_CASE_METHOD(Fixture, "repair mends six of the eleven samples, and says how"
     CHECK(ran.output.find(part) != std::string::npos);
   }
   const Json report = Json::parse(read("r.json"));
-  CHECK(report["repaired"] == 6);
-  CHECK(report["repairs"][0]["repair"]["area_added"] == 80.0);
-  CHECK(report["repairs"][0]["repair"]["codes_before"] == Json({302}));
+  CHECK(report["repairs"] == Json({{"repaired", 6}, {"left", 5}}));
+  CHECK(report["parameters"]["remedies"].size() == 6);
+  const Json& box = report["features"][0]["primitives"][0];
+  CHECK(box["verdict"] == "valid");
+  CHECK(box["repair"]["area_added"] == 80.0);
+  CHECK(box["repair"]["codes_before"] == Json({302}));
   CHECK(run("validate -q mended.city.jsonl").output.find("5 features of 11 are invalid") !=
         std::string::npos);
 }
@@ -56,6 +59,16 @@ std::string repair_line(const std::string& page, const std::string& code) {
   return begin < end ? page.substr(begin, end - begin) : std::string();
 }
 
+/// The first repair of a report.
+Json first_repair(const Json& report) {
+  for (const Json& feature : report["features"]) {
+    for (const Json& primitive : feature["primitives"]) {
+      if (primitive.contains("repair")) return primitive["repair"];
+    }
+  }
+  return {};
+}
+
 TEST_CASE_METHOD(Fixture, "docs/findings.md names the remedies that mend each sample") {
   const std::string page = test::read_text(test::source_path("docs/findings.md"));
   std::size_t mended = 0;
@@ -66,7 +79,8 @@ TEST_CASE_METHOD(Fixture, "docs/findings.md names the remedies that mend each sa
     const std::string sample = std::string("tests/golden/findings/") + code + ".city.json";
     run("repair " + test::source_path(sample) +
         " -o m.city.json --remedies all --weld 0.01 --report r.json -q");
-    const Json repair = Json::parse(read("r.json"))["repairs"][0]["repair"];
+    const Json report = Json::parse(read("r.json"));
+    const Json repair = first_repair(report);
     const std::string line = repair_line(page, code);
     REQUIRE(!line.empty());
     if (line == "- Repair: none.\n") {
@@ -104,11 +118,16 @@ TEST_CASE_METHOD(Fixture,
                  "a sequence that is read line by line is repaired as one that is read whole") {
   const std::string text = test::read_text(kInvalid);
   write("whole.json", text);  // by its name no sequence
-  CHECK(run("repair whole.json -o a.city.jsonl --remedies all --report a.json -q").status == 1);
-  CHECK(run("repair " + kInvalid + " -o b.city.jsonl --remedies all --report b.json -q").status ==
-        1);
-  CHECK(read("a.city.jsonl") == read("b.city.jsonl"));
+  const std::string options = " -o out.city.jsonl --remedies all --no-times -q";
+  CHECK(run("repair whole.json --report a.json --html a.html" + options).status == 1);
+  const std::string mended = read("out.city.jsonl");
+  CHECK(run("repair " + kInvalid + " --report b.json --html b.html" + options).status == 1);
+  CHECK(mended == read("out.city.jsonl"));
   CHECK(read("a.json") == read("b.json"));
+  CHECK(read("a.html") == read("b.html"));
+  CHECK(read("a.html").find("6 of 11 invalid solids could be repaired") != std::string::npos);
+  CHECK(run("repair whole.json -o a.city.jsonl --remedies all -q").status == 1);
+  CHECK(mended == read("a.city.jsonl"));
   CHECK(run("repair " + kInvalid + " -o - --remedies all").output == read("a.city.jsonl"));
   std::string spaced;
   for (const std::string& line : lines_of(text)) spaced += line + "\r\n\r\n";
@@ -117,6 +136,32 @@ TEST_CASE_METHOD(Fixture,
   std::string unspaced = read("c.city.jsonl");
   std::erase(unspaced, '\r');
   CHECK(unspaced == read("a.city.jsonl"));
+}
+
+TEST_CASE_METHOD(Fixture, "GML comes back as GML, with the changed polygons in its text") {
+  std::string text = test::read_text(test::source_path("tests/data/gml/citygml_2_xlinks.gml"));
+  write("valid.gml", text);
+  CHECK(run("repair valid.gml -o same.gml").status == 0);
+  CHECK(read("same.gml") == text);
+  const std::string south = "0,0,0 10,0,0 5,5,10 0,0,0";
+  text.replace(text.find(south), south.size(), "0,0,0 5,5,10 10,0,0 0,0,0");
+  const std::string ground = "<g:surfaceMember x:href=\"#ground\"/>";
+  text.erase(text.find(ground), ground.size());
+  write("broken.gml", text);
+  CHECK(run("validate -q broken.gml").status == 1);
+  const Ran ran = run("repair broken.gml -o mended.gml --remedies all --report r.json");
+  INFO(ran.output);
+  CHECK(ran.status == 0);
+  CHECK(run("validate -q mended.gml").status == 0);
+  CHECK(run("repair broken.gml -o - --remedies all").output == read("mended.gml"));
+  const Json report = Json::parse(read("r.json"));
+  CHECK(report["input_file_type"] == "GML");
+  CHECK(report["repairs"] == Json({{"repaired", 3}, {"left", 0}}));
+  const std::string mended = read("mended.gml");
+  CHECK(mended.find("<g:Polygon g:id=\"watertight-1\">") != std::string::npos);
+  CHECK(mended.find("<g:Polygon g:id=\"south\">") != std::string::npos);
+  write("utf16.gml", std::string("\xFF\xFE<\0g\0/\0>\0", 10));
+  CHECK(run("repair utf16.gml -o out.gml").status == 2);
 }
 
 TEST_CASE_METHOD(Fixture, "a line that cannot be read ends a repair, and what was written goes") {

@@ -65,11 +65,11 @@ TEST_CASE_METHOD(ConversionRoutes, "invalid solids come back repaired, and what 
   REQUIRE(report.status == 200);
   CHECK(report.content_type == "application/json");
   const Json json = Json::parse(report.body);
-  CHECK(json["solids"] == 11);
-  CHECK(json["repaired"] == 6);
-  REQUIRE(json["repairs"].size() == 11);
-  CHECK(json["repairs"][0]["repair"]["remedies"] == Json({"fill"}));
-  CHECK(json["repairs"][0]["repair"]["holes"][0]["method"] == "facet");
+  CHECK(json["repairs"] == Json({{"repaired", 6}, {"left", 5}}));
+  REQUIRE(json["features"].size() == 11);
+  const Json& repair = json["features"][0]["primitives"][0]["repair"];
+  CHECK(repair["remedies"] == Json({"fill"}));
+  CHECK(repair["holes"][0]["method"] == "facet");
   CHECK(send_body("/repair?remedies=all", text, {{"accept", "application/json"}}).body ==
         report.body);
   const auto mended = send_body("/repair?remedies=all&to=cityjsonseq", text);
@@ -81,7 +81,30 @@ TEST_CASE_METHOD(ConversionRoutes, "invalid solids come back repaired, and what 
   const auto as_model = send_body("/repair?remedies=all", text);
   CHECK(as_model.content_type == "application/city+json");
   CHECK(Json::parse(as_model.body)["CityObjects"].size() == 11);
-  CHECK(Json::parse(send_body("/repair?to=report", text).body)["repaired"] == 3);
+  CHECK(Json::parse(send_body("/repair?to=report", text).body)["repairs"]["repaired"] == 3);
+  const auto page = send_body("/repair?remedies=all", text, {{"accept", "text/html"}});
+  CHECK(page.content_type == "text/html; charset=utf-8");
+  CHECK(page.body.find("6 of 11 invalid solids could be repaired") != std::string::npos);
+  CHECK(send_body("/repair?remedies=all&to=html", text).body == page.body);
+}
+
+TEST_CASE_METHOD(ConversionRoutes, "GML is repaired as GML on request, other formats are not") {
+  std::string text = test::read_text(test::source_path("tests/data/gml/citygml_2_xlinks.gml"));
+  const std::string south = "0,0,0 10,0,0 5,5,10 0,0,0";
+  text.replace(text.find(south), south.size(), "0,0,0 5,5,10 10,0,0 0,0,0");
+  const auto mended = send_body("/repair?to=gml", text, {{"content-type", kGml}});
+  INFO(mended.body);
+  REQUIRE(mended.status == 200);
+  CHECK(mended.content_type == "application/gml+xml");
+  CHECK(mended.body.find("<g:Polygon g:id=\"south\">") != std::string::npos);
+  CHECK(send_body("/repair", text, {{"content-type", kGml}, {"accept", "application/gml+xml"}})
+            .body == mended.body);
+  const Json report =
+      Json::parse(send_body("/repair?to=report", text, {{"content-type", kGml}}).body);
+  CHECK(report["input_file_type"] == "GML");
+  CHECK(report["verdict"] == "valid");
+  const std::string city = test::read_text(test::source_path("examples/invalid.city.jsonl"));
+  CHECK(send_body("/repair?to=gml", city).status == 406);
 }
 
 TEST_CASE_METHOD(ConversionRoutes,
@@ -91,7 +114,7 @@ TEST_CASE_METHOD(ConversionRoutes,
   CHECK(refused.status == 422);
   const Json problem = Json::parse(refused.body);
   CHECK(problem["type"] == "urn:watertight:problem:invalid-solids");
-  CHECK(problem["report"]["repaired"] == 6);
+  CHECK(problem["report"]["repairs"]["repaired"] == 6);
   const std::string valid = test::read_text(test::source_path("examples/delft.city.jsonl"));
   const std::string first_two = valid.substr(0, valid.find('\n', valid.find('\n') + 1) + 1);
   const auto kept = send_body("/repair?invalid=refuse&to=cityjsonseq", first_two);

@@ -97,6 +97,7 @@ class Trial {
                          {options_.certify.tolerances, options_.most_islands, attempt.prefers_plan,
                           attempt.joins_parts, options_.certify.ladder.cancel});
       if (attempt.joins_parts && holes.empty()) return false;
+      if (first_holes_.empty()) first_holes_ = holes;
       note(Remedy::fill, static_cast<std::size_t>(std::ranges::count_if(
                              holes, [](const HoleFill& hole) { return hole.facets > 0; })));
     }
@@ -119,6 +120,9 @@ class Trial {
     repaired.holes = std::move(holes);
     return true;
   }
+
+  /// The holes of the first set with Remedy::fill.
+  std::vector<HoleFill> first_holes() { return std::move(first_holes_); }
 
  private:
   /// A solid that was judged, and what was found.
@@ -150,6 +154,7 @@ class Trial {
 
   EditedSolid start_;
   std::vector<Tried> tried_;
+  std::vector<HoleFill> first_holes_;
   delaunay::EngineWorkers* workers_;
   const RepairOptions& options_;
 };
@@ -238,6 +243,7 @@ Repaired repair(const Solid& solid, delaunay::EngineWorkers* workers,
     repaired.is_stopped = is_cancelled && is_cancelled();
     if (repaired.is_stopped) break;
   }
+  if (repaired.outcome != Repaired::Outcome::repaired) repaired.holes = trial.first_holes();
   return repaired;
 }
 

@@ -39,7 +39,7 @@ struct Repaired {
   std::optional<EditedSolid> edits;  // the facets of the repaired solid and where they came from
   std::vector<Remedy> remedies;      // those that changed something
   Moves moves;                       // by Remedy::weld
-  std::vector<HoleFill> holes;
+  std::vector<HoleFill> holes;       // without a repair those of the first set with Remedy::fill
 };
 
 /// A repaired solid on the vertices of the submitted one, all of them in their order.

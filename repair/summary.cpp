@@ -70,12 +70,12 @@ RepairSummary summary_of(const Solid& submitted, const Repaired& repaired) {
   summary.outcome = repaired.outcome;
   summary.is_undecided = repaired.is_stopped || repaired.before.verdict == Verdict::undecided;
   summary.codes_before = validate::error_codes(repaired.before.findings);
+  summary.holes = repaired.holes;
   if (!repaired.edits) return summary;
   summary.remedies = repaired.remedies;
   count_facets(submitted, *repaired.edits, summary);
   summary.moves = repaired.moves;
   if (repaired.after->report.measures) summary.volume = repaired.after->report.measures->volume;
-  summary.holes = repaired.holes;
   return summary;
 }
 

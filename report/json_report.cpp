@@ -85,9 +85,11 @@ void write_surface_counts(JsonText& json, const pipeline::SurfaceCounts& surface
 }
 
 void write_remedies(JsonText& json, const repair::RepairOptions& options) {
-  json.key("remedies").open('[');
-  for (const repair::Remedy remedy : options.remedies) json.value(repair::to_string(remedy));
-  json.close(']').key("weld_tol").value(options.weld_metres);
+  std::string remedies;
+  for (const repair::Remedy remedy : options.remedies) {
+    remedies.append(remedies.empty() ? "" : ",").append(repair::to_string(remedy));
+  }
+  json.key("remedies").value(remedies).key("weld_tol").value(options.weld_metres);
   json.key("islands").value(std::uint64_t{options.most_islands});
 }
 

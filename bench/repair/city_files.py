@@ -30,14 +30,11 @@ def run(*arguments):
 
 def city_objects(text):
     """The city objects of a CityJSON or a CityJSONSeq, each with its document's vertices."""
-    if not text.strip():
-        return
-    first = json.loads(text.splitlines()[0]) if "\n" in text.strip() else None
-    is_sequence = first is not None and first.get("type") == "CityJSON"
-    for line in text.splitlines() if is_sequence else [text]:
-        if not line.strip():
-            continue
-        document = json.loads(line)
+    try:
+        documents = [json.loads(text)]
+    except json.JSONDecodeError:
+        documents = [json.loads(line) for line in text.splitlines() if line.strip()]
+    for document in documents:
         for name, thing in document.get("CityObjects", {}).items():
             yield name, thing, document.get("vertices", [])
 
@@ -49,7 +46,7 @@ def solids(path, program, folder):
         run(program, "convert", path, "-o", city)
         path = city
     found = {}
-    for name, thing, vertices in city_objects(path.read_text()):
+    for name, thing, vertices in city_objects(path.read_text(encoding="utf-8-sig")):
         for number, geometry in enumerate(thing.get("geometry", [])):
             kind = geometry["type"]
             if kind not in ("Solid", "MultiSolid", "CompositeSolid"):

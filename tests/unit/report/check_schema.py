@@ -18,8 +18,22 @@ import jsonschema
 ABSENT = {"time", "seconds", "undecided_reason", "tolerant", "tolerant_snap_tol", "lod", "solids"}
 
 
-def reports_of(program, files):
-    out = subprocess.run([program, "json", *map(str, files)], capture_output=True, check=True)
+# A cube without its upper facet, whose border lies on no plane; and a cube with a second one that
+# shares an edge with the border, so that the border cannot be cut into simple loops.
+BOWL = """OFF
+8 5 0
+0 0 0\n4 0 0\n4 4 0\n0 4 0\n0 0 4\n4 0 5\n4 4 4\n0 4 6
+4 3 2 1 0\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7
+"""
+STRIP = """OFF
+6 6 0
+0 0 0\n4 0 1\n4 4 0\n0 4 2\n2 2 5\n7 1 3
+3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n3 0 1 5\n3 1 0 2
+"""
+
+
+def reports_of(program, files, kind="json"):
+    out = subprocess.run([program, kind, *map(str, files)], capture_output=True, check=True)
     return [json.loads(line) for line in out.stdout.decode("utf-8").splitlines()]
 
 
@@ -100,6 +114,12 @@ def main():
         broken.write_bytes(b'{"type":"CityJSON",\xff')
         unknown = pathlib.Path(folder) / "unknown.bin"
         unknown.write_bytes(b"\x00\x01")
+        bowl = pathlib.Path(folder) / "bowl.off"
+        bowl.write_text(BOWL)
+        strip = pathlib.Path(folder) / "strip.off"
+        strip.write_text(STRIP)
+        mended = [root / "examples/invalid.city.jsonl", bowl, strip]
+        reports += reports_of(program, mended, "repaired")
         reports += reports_of(program, [broken, unknown])
     if reports[-2]["all_errors"] != [901] or reports[-2]["verdict"] != "undecided":
         failures.append("a broken file is not reported as 901, undecided")

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// write_reports json|geojson|html FILE...: prints the report of some documents, without engines and
-// times. For tests of the form of reports.
+// write_reports json|geojson|html|repaired FILE...: prints the report of some documents, without
+// engines and times; `repaired` the JSON report on the documents after a repair with all remedies.
+// For tests of the form of reports.
 #include <cstdio>
 
+#include "pipeline/repaired/validate_repaired.h"
 #include "report/feature_report.h"
 #include "tests/files.h"
 
@@ -37,6 +39,28 @@ Status add_document(report::FeatureReport& report, const std::string& path) {
   return status ? report.end_document(end) : status;
 }
 
+repair::RepairOptions all_remedies() {
+  repair::RepairOptions options;
+  options.remedies.assign(repair::kAllRemedies.begin(), repair::kAllRemedies.end());
+  options.weld_metres = 0.01;
+  return options;
+}
+
+Status add_repaired(report::FeatureReport& report, const std::string& path) {
+  const Bytes bytes = test::read_bytes(path);
+  const auto format = formats::detect_format(path, bytes);
+  if (!format) return format.error();
+  const auto repaired =
+      pipeline::repair_text(bytes, *format, *format, {}, nullptr, all_remedies(), 1);
+  if (!repaired) return repaired.error();
+  Status status = report.begin_document({path.substr(path.rfind('/') + 1), *format});
+  if (!status) return status;
+  status = pipeline::validate_repaired(
+      repaired->document, *format, {}, repaired->outcome, nullptr, {},
+      [&](pipeline::ValidatedFeature&& feature) { return report.add(feature); });
+  return status ? report.end_document({}) : std::move(status);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -48,11 +72,14 @@ int main(int count, char** arguments) {
   };
   report::ReportHead head;
   head.program_version = "0.1.0";
-  const auto report = kind == "json"      ? report::json_report(sink, head)
+  if (kind == "repaired") head.repair = all_remedies();
+  const auto report = kind == "html"      ? report::html_report(sink, head)
                       : kind == "geojson" ? report::geojson_report(sink, head)
-                                          : report::html_report(sink, head);
+                                          : report::json_report(sink, head);
   for (int i = 2; i < count; ++i) {
-    if (!add_document(*report, arguments[i])) return 1;
+    const Status added = kind == "repaired" ? add_repaired(*report, arguments[i])
+                                            : add_document(*report, arguments[i]);
+    if (!added) return 1;
   }
   return report->finish() ? 0 : 1;
 }

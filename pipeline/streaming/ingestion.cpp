@@ -73,12 +73,6 @@ Status Ingestion::look_up_collection() {
 
 Status Ingestion::add(formats::FeatureReader& reader) {
   if (Status found = look_up_collection(); !found) return found;
-  const Format format = reader.document().format;
-  if (options_.repair && format == Format::gml) {
-    return Error{ErrorCode::unsupported,
-                 "GML is not repaired while it is stored; repair it by `watertight repair` or POST "
-                 "/repair first"};
-  }
   auto shared = shared_part(reader.document(), options_.contract);
   if (!shared) return std::move(shared).error();
   TemplateInspector templates(reader.document().templates, workers_, options_.certify,

@@ -105,6 +105,13 @@ TEST_CASE_METHOD(ConversionRoutes, "GML is repaired as GML on request, other for
   CHECK(report["verdict"] == "valid");
   const std::string city = test::read_text(test::source_path("examples/invalid.city.jsonl"));
   CHECK(send_body("/repair?to=gml", city).status == 406);
+  CHECK(post("/collections/houses/items", text, kGml).status == 422);
+  const auto stored = post("/collections/houses/items?repair=orientation", text, kGml);
+  INFO(stored.body);
+  REQUIRE(stored.status == 201);
+  const auto proven = get("/collections/houses/items/house?f=proof");
+  const Json proof = Json::parse(test::whole(proven));
+  CHECK(proof["solids"][0]["repair"]["facets_turned"] == 1);
 }
 
 TEST_CASE_METHOD(ConversionRoutes,

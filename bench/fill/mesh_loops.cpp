@@ -11,86 +11,25 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "bench/fill/random_loop.h"
 #include "bench/input.h"
 #include "fill/triangulate_loops.h"
-#include "tests/random.h"
 
 using namespace watertight;
 
 namespace {
-
-using Edge = std::pair<Index, Index>;
-
-struct Mesh {
-  std::vector<Point> points;
-  std::vector<Triangle> triangles;
-  std::map<Edge, std::size_t> triangle_of;  // directed edge -> triangle
-};
-
-Mesh mesh_of(const Solid& solid) {
-  Mesh mesh;
-  mesh.points.assign(solid.vertices().begin(), solid.vertices().end());
-  for (Index facet = 0; facet < solid.facet_count(); ++facet) {
-    const auto ring = solid.ring(solid.rings_of(facet).begin);
-    if (ring.size() != 3) continue;
-    const Triangle triangle{ring[0], ring[1], ring[2]};
-    for (std::size_t i = 0; i < 3; ++i) {
-      mesh.triangle_of[{triangle[i], triangle[(i + 1) % 3]}] = mesh.triangles.size();
-    }
-    mesh.triangles.push_back(triangle);
-  }
-  return mesh;
-}
-
-/// The border of a disc that grows from a random triangle until it has so many vertices; nothing if
-/// it cannot grow on, or meets a taken vertex.
-std::optional<fill::Loop> random_loop(const Mesh& mesh, std::size_t size,
-                                      const std::set<Index>& taken, test::Random& random) {
-  const Triangle& first = mesh.triangles[random.below(mesh.triangles.size())];
-  fill::Loop loop(first.begin(), first.end());
-  for (int attempt = 0; attempt < 100'000 && loop.size() < size; ++attempt) {
-    const std::size_t at = random.below(loop.size());
-    const Edge edge{loop[(at + 1) % loop.size()], loop[at]};  // as the triangle outside has it
-    const auto found = mesh.triangle_of.find(edge);
-    if (found == mesh.triangle_of.end()) continue;
-    const Triangle& triangle = mesh.triangles[found->second];
-    const Index tip = *std::ranges::find_if(
-        triangle, [&](Index v) { return v != edge.first && v != edge.second; });
-    const auto place = std::ranges::find(loop, tip);
-    if (place == loop.end()) {
-      loop.insert(loop.begin() + static_cast<std::ptrdiff_t>(at) + 1, tip);
-      continue;
-    }
-    // The triangle fills a corner: the vertex in the corner leaves the border.
-    const auto corner = [&](std::size_t gone) {
-      const std::size_t n = loop.size();
-      if (n > 3) loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(gone % n));
-    };
-    if (loop[(at + 2) % loop.size()] == tip) {
-      corner(at + 1);
-    } else if (loop[(at + loop.size() - 1) % loop.size()] == tip) {
-      corner(at);
-    }
-  }
-  const bool is_free =
-      std::ranges::none_of(loop, [&](Index vertex) { return taken.contains(vertex); });
-  if (loop.size() < size || !is_free) return std::nullopt;
-  std::ranges::reverse(loop);  // with the disc missing on its left it runs the other way
-  return loop;
-}
 
 struct Compared {
   double area_ratio = 0;
   double degrees = 0;  // per interior edge
 };
 
-std::optional<Compared> compare(const Mesh& mesh, const std::vector<fill::Loop>& loops) {
+std::optional<Compared> compare(const bench::Mesh& mesh, const std::vector<fill::Loop>& loops) {
   std::size_t vertices = 0;
   for (const fill::Loop& loop : loops) vertices += loop.size();
   const auto filled = [&](fill::CandidateSpace space, fill::Objective objective) {
@@ -119,7 +58,7 @@ int main(int argc, char** argv) {
   if (argc < 6) return 2;
   const auto document = bench::read_file(argv[1]);
   if (!document || document->features.empty()) return 1;
-  const Mesh mesh = mesh_of(document->features[0].solids[0].solid);
+  const bench::Mesh mesh = bench::mesh_of(document->features[0].solids[0].solid);
   const std::size_t loop_count = std::stoul(argv[2]);
   const std::size_t count = std::stoul(argv[3]);
   const std::size_t least = std::stoul(argv[4]);
@@ -132,7 +71,8 @@ int main(int argc, char** argv) {
     std::vector<fill::Loop> loops;
     std::set<Index> taken;
     while (loops.size() < loop_count) {
-      const auto loop = random_loop(mesh, least + random.below(most - least + 1), taken, random);
+      const auto loop =
+          bench::random_loop(mesh, least + random.below(most - least + 1), taken, random);
       if (!loop) continue;
       taken.insert(loop->begin(), loop->end());
       loops.push_back(*loop);

@@ -66,6 +66,7 @@ class SolidRewriter {
   }
   /// Whether other solids get the facet by the same property.
   bool is_common(Index facet) const { return document_.member_uses[its_.members[facet].link] > 1; }
+  bool keeps_shells() const;
   bool is_unchanged(Index facet, Index after) const;
   std::string positions_of(std::span<const Index> ring, bool is_reversed) const;
   std::string ring_property(Index facet, std::size_t ring, bool is_reversed,
@@ -344,7 +345,25 @@ Status SolidRewriter::change_facet(Index facet, std::span<const Index> parts) {
   return status;
 }
 
+/// Whether each facet is in the shell of the facet from which it comes.
+bool SolidRewriter::keeps_shells() const {
+  if (edit_.solid.shell_count() != before_.shell_count()) return false;
+  for (Index shell = 0; shell < before_.shell_count(); ++shell) {
+    const IndexRange own = before_.facets_of(shell);
+    const IndexRange facets = edit_.solid.facets_of(shell);
+    for (Index facet = facets.begin; facet < facets.end; ++facet) {
+      const Index source = edit_.facet_source[facet];
+      const bool is_there = source >= own.begin && source < own.end;
+      if (source == kNone ? own.size() == 0 : !is_there) return false;
+    }
+  }
+  return true;
+}
+
 Result<std::vector<TextChange>> SolidRewriter::changes() {
+  if (!keeps_shells()) {
+    return Error{ErrorCode::unsupported, "a shell would come or go, or facets change the shell"};
+  }
   std::vector<std::vector<Index>> parts(before_.facet_count());
   for (Index facet = 0; facet < edit_.solid.facet_count(); ++facet) {
     if (edit_.facet_source[facet] != kNone) parts[edit_.facet_source[facet]].push_back(facet);
@@ -356,8 +375,6 @@ Result<std::vector<TextChange>> SolidRewriter::changes() {
     const IndexRange facets = edit_.solid.facets_of(shell);
     for (Index facet = facets.begin; facet < facets.end; ++facet) {
       if (edit_.facet_source[facet] != kNone) continue;
-      const bool has_shell = shell < before_.shell_count() && before_.facets_of(shell).size() > 0;
-      if (!has_shell) return Error{ErrorCode::unsupported, "a new shell cannot be written"};
       if (Status added = add(before_.facets_of(shell).end - 1, facet); !added) return added.error();
     }
   }

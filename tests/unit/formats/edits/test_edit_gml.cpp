@@ -229,6 +229,33 @@ TEST_CASE("a solid that the text cannot have is refused, and the others are writ
   CHECK(text_of(gml).find("uri=\"#p0\"") == std::string::npos);
 }
 
+TEST_CASE("a solid whose shells change is refused") {
+  std::string text = file_text("gml/solid_3_2.gml");
+  const std::size_t begin = text.find("<gml:surfaceMember>");
+  text.erase(begin, text.find("</gml:Shell>") - begin);
+  const Document document = gml_of(text);
+  const Solid& solid = document.features[0].solids[0].solid;
+  REQUIRE(solid.facets_of(0).size() == 0);
+  SolidArrays arrays;
+  arrays.vertices.assign(solid.vertices().begin(), solid.vertices().end());
+  SolidEdit edit{0, solid, {}};
+  for (const Facet& facet : facets_of(solid)) {
+    const auto& ring = facet.rings[0];
+    arrays.ring_vertices.insert(arrays.ring_vertices.end(), ring.rbegin(), ring.rend());
+    arrays.end_ring();
+    arrays.end_facet();
+    edit.facet_source.push_back(facet.source);
+  }
+  arrays.end_shell();
+  auto one_shell = Solid::make(std::move(arrays), solid.lattice(), solid.srid());
+  REQUIRE(one_shell);
+  edit.solid = *std::move(one_shell);
+  const auto gml = formats::edit_gml(as_bytes(text), ReadOptions{}, {{edit}});
+  REQUIRE(gml);
+  CHECK(gml->refused.size() == 1);
+  CHECK(text_of(*gml) == text);
+}
+
 TEST_CASE("a polygon of two solids that one of them changes stays in the other") {
   const std::string one = "<g:Solid g:id=\"a\"><g:exterior><g:Shell>" + kTetrahedron +
                           "</g:Shell></g:exterior></g:Solid>";

@@ -57,7 +57,7 @@ class SolidRewriter {
   const std::vector<Index>& changed_polygons() const { return changed_; }
 
  private:
-  Error unsupported(Index node, std::string message) const {
+  Error unsupported(Index node, const std::string& message) const {
     return error_at(gml_.model.nodes[node].place, ErrorCode::unsupported, message);
   }
   /// The span of the property through which a facet got into its shell.
@@ -398,7 +398,8 @@ SolidShape shape_of(const Solid& solid) {
         for (const Index vertex : solid.ring(ring)) {
           positions.push_back(solid.lattice().world(solid.vertices()[vertex]));
         }
-        std::ranges::rotate(positions, std::ranges::min_element(positions));
+        std::rotate(positions.begin(), std::min_element(positions.begin(), positions.end()),
+                    positions.end());
       }
       if (!rings.empty()) std::ranges::sort(rings.begin() + 1, rings.end());
     }

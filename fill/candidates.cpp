@@ -107,12 +107,9 @@ Candidates::Frame Candidates::frame_of(Vertex from, Vertex to) const {
   return {right * (1 / geometry::length(right)), up * (1 / geometry::length(up))};
 }
 
-EdgeNumber Candidates::edge(Vertex a, Vertex b) const {
-  const auto [lower, upper] = std::minmax(a, b);
+EdgeNumber Candidates::found_edge(Vertex lower, Vertex upper) const {
   const std::uint32_t begin = lowers_[lower];
   const std::uint32_t end = lowers_[lower + 1U];
-  // Where every larger vertex is joined to this one its number gives the place.
-  if (end - begin + lower + 1 == borders_.size()) return begin + (upper - lower - 1U);
   const auto found = std::lower_bound(uppers_.begin() + begin, uppers_.begin() + end, upper);
   const auto at = static_cast<std::uint32_t>(found - uppers_.begin());
   return at < end && *found == upper ? at : kNoEdge;

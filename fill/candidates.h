@@ -5,6 +5,7 @@
 // Source: Zou, Ju and Carr 2013, section 4: all triples of vertices, or the Delaunay triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -24,7 +25,15 @@ class Candidates {
   Candidates(const Borders& borders, std::span<const std::array<Vertex, 3>> triangles);
 
   /// The edge between two vertices; kNoEdge where no triangle has it.
-  EdgeNumber edge(Vertex a, Vertex b) const;
+  EdgeNumber edge(Vertex a, Vertex b) const {
+    const Vertex lower = std::min(a, b);
+    const Vertex upper = std::max(a, b);
+    const std::uint32_t begin = lowers_[lower];
+    const std::uint32_t count = lowers_[lower + 1U] - begin;
+    // Where every larger vertex is joined to this one its number gives the place.
+    if (count + lower + 1 == borders_.size()) return begin + (upper - lower - 1U);
+    return found_edge(lower, upper);
+  }
   /// The third vertices of the triangles on an edge, ascending.
   std::span<const Vertex> thirds(EdgeNumber edge) const {
     return {thirds_.data() + begins_[edge], begins_[edge + 1] - begins_[edge]};
@@ -50,6 +59,7 @@ class Candidates {
     geometry::Vector3 right{};
     geometry::Vector3 up{};
   };
+  EdgeNumber found_edge(Vertex lower, Vertex upper) const;
   Frame frame_of(Vertex from, Vertex to) const;
   void list_edges(std::span<const std::array<Vertex, 3>> triangles);
   void list_thirds(std::span<const std::array<Vertex, 3>> triangles);

@@ -4,10 +4,6 @@
 namespace watertight::fill {
 namespace {
 
-std::uint32_t steps_along(const Borders& borders, Sense sense, Vertex from, Vertex to) {
-  return sense == Sense::backward ? borders.steps(to, from) : borders.steps(from, to);
-}
-
 bool has_repeated_edge(const Domain& domain) {
   for (std::size_t i = 0; i < domain.size; ++i) {
     for (std::size_t j = 0; j < i; ++j) {

@@ -30,6 +30,11 @@ struct Span {
   EdgeNumber edge = kNoEdge;
 };
 
+/// The number of edges from one vertex to another one of its loop in a sense.
+inline std::uint32_t steps_along(const Borders& borders, Sense sense, Vertex from, Vertex to) {
+  return sense == Sense::backward ? borders.steps(to, from) : borders.steps(from, to);
+}
+
 /// A closed boundary of spanning edges and input segments, which has the domain on its left, and
 /// the loops inside that no triangle has reached. A segment whose ends are one vertex and that has
 /// a sense is a whole loop, so that this vertex is on the boundary twice.
@@ -40,6 +45,9 @@ struct Domain {
 
   const Span& after(std::size_t i) const { return spans[i + 1 < size ? i + 1 : 0]; }
 };
+
+/// Whether a domain lies between an edge and a segment of one loop, with no loop inside.
+inline bool is_segment(const Domain& domain) { return domain.size == 1 && domain.untouched == 0; }
 
 /// The length of the segment after a spanning edge, in edges.
 std::uint32_t segment_length(const Borders& borders, const Domain& domain, std::size_t i);

@@ -17,6 +17,9 @@ constexpr unsigned kSenseBit = 48;
 constexpr unsigned kUntouchedBit = 50;
 constexpr unsigned kSizeBit = 56;
 
+/// The most vertices for which segments have a list of their own: 4 MB.
+constexpr std::size_t kMostListed = 1024;
+
 /// Small sets first: each is compared with its subsets.
 void sort_by_set(std::vector<WeighedTriangle>& triangles) {
   const auto is_other = [&](const WeighedTriangle& triangle) {
@@ -29,6 +32,11 @@ void sort_by_set(std::vector<WeighedTriangle>& triangles) {
 }
 
 }  // namespace
+
+DomainTable::DomainTable(std::size_t vertex_count, bool has_angles, bool keeps_all_sets)
+    : vertex_count_(vertex_count), has_angles_(has_angles), keeps_all_sets_(keeps_all_sets) {
+  if (vertex_count <= kMostListed) segments_.assign(vertex_count * vertex_count, kUnknown);
+}
 
 DomainTable::Key DomainTable::key_of(const Domain& domain) {
   Key key{};
@@ -95,6 +103,10 @@ void DomainTable::add(const Domain& domain, std::span<const EdgeNumber> weak,
   std::size_t slot = hash_of(key, domain.size) & mask;
   while (slots_[slot] != kUnknown) slot = (slot + 1) & mask;
   slots_[slot] = static_cast<Number>(domains_.size());
+  const Span& first = domain.spans[0];
+  if (!segments_.empty() && is_segment(domain) && first.sense == Sense::forward) {
+    segments_[first.tail * vertex_count_ + first.head] = slots_[slot];
+  }
   domains_.push_back({static_cast<std::uint32_t>(keys_.size()),
                       static_cast<std::uint32_t>(weak_.size()),
                       static_cast<std::uint32_t>(sets_.size())});
@@ -167,6 +179,20 @@ const DomainTable::Kept& DomainTable::nearest(std::span<const Kept> kept, Turn t
   return at_turn(below, turn) <= at_turn(above, turn) ? below : above;
 }
 
+const DomainTable::Kept& DomainTable::best_of(std::span<const Kept> kept,
+                                              std::optional<Turn> behind) const {
+  return behind ? nearest(kept, *behind) : *std::ranges::min_element(kept, {}, &Kept::weight);
+}
+
+std::optional<Weight> DomainTable::least_weight(Number number, std::optional<Turn> behind) const {
+  const std::size_t end = number + 1 < domains_.size() ? domains_[number + 1].set : sets_.size();
+  const std::size_t set = domains_[number].set;
+  WATERTIGHT_ASSERT(end <= set + 1);
+  if (set == end) return std::nullopt;
+  const Kept& best = best_of(kept(set), behind);
+  return behind ? at_turn(best, *behind) : best.weight;
+}
+
 std::span<const EdgeNumber> DomainTable::weak_edges(Number number) const {
   const std::size_t end = number + 1 < domains_.size() ? domains_[number + 1].weak : weak_.size();
   return std::span(weak_).subspan(domains_[number].weak, end - domains_[number].weak);
@@ -178,8 +204,7 @@ void DomainTable::answer(Number number, std::optional<Turn> behind,
   const std::size_t begin_of_answers = answers.size();
   for (std::size_t set = domains_[number].set; set < end; ++set) {
     const std::span<const Kept> list = kept(set);
-    const Kept& best =
-        behind ? nearest(list, *behind) : *std::ranges::min_element(list, {}, &Kept::weight);
+    const Kept& best = best_of(list, behind);
     const Answer answer{sets_[set].weak, behind ? at_turn(best, *behind) : best.weight, best.weight,
                         best.third};
     const auto is_better = [&](const Answer& other) {
@@ -194,9 +219,10 @@ void DomainTable::answer(Number number, std::optional<Turn> behind,
 }
 
 std::size_t DomainTable::bytes() const {
-  return slots_.capacity() * sizeof(Number) + keys_.capacity() * sizeof(std::uint64_t) +
-         weak_.capacity() * sizeof(EdgeNumber) + domains_.capacity() * sizeof(Record) +
-         sets_.capacity() * sizeof(Set) + triangles_.capacity() * sizeof(Kept);
+  return (segments_.capacity() + slots_.capacity()) * sizeof(Number) +
+         keys_.capacity() * sizeof(std::uint64_t) + weak_.capacity() * sizeof(EdgeNumber) +
+         domains_.capacity() * sizeof(Record) + sets_.capacity() * sizeof(Set) +
+         triangles_.capacity() * sizeof(Kept);
 }
 
 }  // namespace watertight::fill

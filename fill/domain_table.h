@@ -46,18 +46,25 @@ class DomainTable {
   using Number = std::uint32_t;
   static constexpr Number kUnknown = 0xFFFFFFFF;
 
-  DomainTable(bool has_angles, bool keeps_all_sets)
-      : has_angles_(has_angles), keeps_all_sets_(keeps_all_sets) {}
+  /// For domains of so many vertices.
+  DomainTable(std::size_t vertex_count, bool has_angles, bool keeps_all_sets);
 
   /// The number of a domain, whatever is behind its first spanning edge; kUnknown if it was not
   /// added. Cost: constant.
   Number find(const Domain& domain) const;
+  /// The number of the domain between an edge and the segment of a loop from its head to its tail,
+  /// which follows the loop; kUnknown if it was not added or is not listed. Cost: constant.
+  Number find_segment(Vertex tail, Vertex head) const {
+    return segments_.empty() ? kUnknown : segments_[tail * vertex_count_ + head];
+  }
   /// Adds a domain. Of the triangles it keeps those that are the best for some triangle behind.
   /// Cost: O(n log n) for each set of weak edges, and each pair of sets with a subset.
   void add(const Domain& domain, std::span<const EdgeNumber> weak,
            std::vector<WeighedTriangle>& triangles);
 
   std::span<const EdgeNumber> weak_edges(Number number) const;
+  /// The least weight of a domain without weak edges, as answer() has it; nothing without one.
+  std::optional<Weight> least_weight(Number number, std::optional<Turn> behind) const;
   /// Appends the least weight for each set of weak edges that is worth it, where the triangle
   /// behind the access edge has a direction, or for any direction.
   void answer(Number number, std::optional<Turn> behind, std::vector<Answer>& answers) const;
@@ -85,6 +92,7 @@ class DomainTable {
 
   static Key key_of(const Domain& domain);
   static std::size_t hash_of(const Key& key, std::size_t size);
+  const Kept& best_of(std::span<const Kept> kept, std::optional<Turn> behind) const;
   bool has_key(Number number, const Key& key, std::size_t size) const;
   void grow();
   std::span<const Kept> kept(std::size_t set) const;
@@ -93,9 +101,11 @@ class DomainTable {
   void keep_best_by_turn(std::vector<Kept>& list) const;
   void drop_heavier(std::size_t first_set, WeakSet weak, std::vector<Kept>& list) const;
 
+  std::size_t vertex_count_;
   bool has_angles_;
   bool keeps_all_sets_;
-  std::vector<Number> slots_;  // open addressing; kUnknown is free
+  std::vector<Number> segments_;  // tail, head -> number; empty for many vertices
+  std::vector<Number> slots_;     // open addressing; kUnknown is free
   std::vector<std::uint64_t> keys_;
   std::vector<EdgeNumber> weak_;
   std::vector<Record> domains_;

@@ -11,7 +11,7 @@ Optimum::Optimum(const Borders& borders, const Candidates& candidates, const Spl
       candidates_(candidates),
       has_angles_(options.has_angles),
       splitter_(borders, candidates, options),
-      table_(options.has_angles, keeps_all_sets) {}
+      table_(borders.size(), options.has_angles, keeps_all_sets) {}
 
 /// The direction of what is behind a spanning edge: a triangle of the filling, or for an edge of a
 /// loop the shell's facet.
@@ -43,13 +43,17 @@ void Optimum::answer(const Part& part, std::vector<Answer>& answers) const {
     table_.answer(part.number, turn_behind(first), answers);
     return;
   }
-  Span other = part.domain.spans[1];
-  if (part.kind == DomainKind::closing) {
-    other = first;
-    other.behind = kNoVertex;
-  }
-  const Weight weight = angle(turn_behind(first), turn_behind(other));
+  const Weight weight = part.kind == DomainKind::closing
+                            ? closing_weight(first)
+                            : angle(turn_behind(first), turn_behind(part.domain.spans[1]));
   answers.push_back({0, weight, weight, kNoVertex});
+}
+
+/// The weight of a domain whose only edge is an edge of a loop: that to the shell's facet.
+Weight Optimum::closing_weight(const Span& side) const {
+  Span facet = side;
+  facet.behind = kNoVertex;
+  return angle(turn_behind(side), turn_behind(facet));
 }
 
 /// Calls visit(weak edges, weight, first answer, second answer or null) for each pair of answers of
@@ -117,6 +121,59 @@ bool Optimum::weigh_triangles(Frame& frame) {
   return true;
 }
 
+/// Looks up the part of a segment on one side of a triangle; `length` is that of its own segment.
+/// False if it was not weighed yet; it is unknown_ then.
+bool Optimum::find_segment(const Span& side, std::uint32_t length, DomainTable::Number& number) {
+  number = DomainTable::kUnknown;
+  if (length == 1) return true;
+  if (side.sense == Sense::forward) number = table_.find_segment(side.tail, side.head);
+  if (number != DomainTable::kUnknown) return true;
+  unknown_ = {};
+  unknown_.size = 1;
+  unknown_.spans[0] = side;
+  number = table_.find(unknown_);
+  return number != DomainTable::kUnknown;
+}
+
+/// The least weight of a part that find_segment() has found; nothing if it has no triangulation.
+std::optional<Weight> Optimum::weight_of(const Span& side, DomainTable::Number number) const {
+  if (number == DomainTable::kUnknown) return closing_weight(side);
+  return table_.least_weight(number, turn_behind(side));
+}
+
+/// weigh_triangles() for a segment, most domains by far: the two parts are segments too, and have
+/// no weak edges.
+bool Optimum::weigh_segment(Frame& frame) {
+  const Span access = frame.domain.spans[0];
+  const std::uint32_t length = segment_length(borders_, frame.domain, 0);
+  const std::span<const Vertex> thirds = candidates_.thirds(access.edge);
+  const std::span<const Turn> turns = candidates_.turns(access.edge);
+  for (; frame.next < thirds.size(); ++frame.next) {
+    const Vertex third = thirds[frame.next];
+    if (borders_.loop[third] != borders_.loop[access.head]) continue;
+    const std::uint32_t steps = steps_along(borders_, access.sense, access.head, third);
+    if (steps >= length) continue;
+    const bool is_dead = (steps > 1 && borders_.is_border(third, access.head)) ||
+                         (length - steps > 1 && borders_.is_border(access.tail, third));
+    if (is_dead) continue;
+    Span first{access.tail, third, access.head, access.sense, candidates_.edge(access.tail, third)};
+    Span second{third, access.head, access.tail, access.sense,
+                candidates_.edge(third, access.head)};
+    if (!has_angles_) first.behind = second.behind = kNoVertex;
+    DomainTable::Number one = 0;
+    DomainTable::Number other = 0;
+    if (!find_segment(first, length - steps, one) || !find_segment(second, steps, other)) {
+      return false;
+    }
+    const std::optional<Weight> weight = weight_of(first, one);
+    const std::optional<Weight> rest = weight_of(second, other);
+    if (!weight || !rest) continue;
+    frame.found.push_back({0, own_weight(frame.domain, third) + *weight + *rest,
+                           turns[frame.next] + kHalfTurn, third});
+  }
+  return true;
+}
+
 void Optimum::start_frame(const Domain& domain) {
   if (frame_count_ == frames_.size()) frames_.emplace_back();
   Frame& frame = frames_[frame_count_++];
@@ -137,7 +194,7 @@ Status Optimum::weigh(const Domain& start, const Budget& budget) {
       return Error{ErrorCode::limit_exceeded, "the hole is too large for an optimal filling"};
     }
     Frame& frame = frames_[frame_count_ - 1];
-    if (!weigh_triangles(frame)) {
+    if (!(is_segment(frame.domain) ? weigh_segment(frame) : weigh_triangles(frame))) {
       start_frame(unknown_);
       continue;
     }

@@ -48,6 +48,10 @@ class Optimum {
   };
   Status weigh(const Domain& start, const Budget& budget);
   bool weigh_triangles(Frame& frame);
+  bool weigh_segment(Frame& frame);
+  bool find_segment(const Span& side, std::uint32_t length, DomainTable::Number& number);
+  std::optional<Weight> weight_of(const Span& side, DomainTable::Number number) const;
+  Weight closing_weight(const Span& side) const;
   bool find_parts();
   template <class Visit>
   void join_parts(const Domain& domain, std::span<const EdgeNumber> weak, const Split& split,

@@ -39,6 +39,21 @@ window.addEventListener('load', function () {
 </script>"""
 
 
+# The script for the report on a repair: its table is no part of the findings, which are sorted.
+REPAIRS = """<script>
+window.addEventListener('load', function () {
+  var head = document.querySelector('th button[data-key=code]');
+  head.click(); head.click();
+  document.title = 'REPAIRS' + JSON.stringify({
+    repairs: document.querySelectorAll('.repairs tbody tr').length,
+    findings: document.querySelectorAll('.findings tbody tr').length,
+    inside: document.querySelectorAll('.repairs section').length,
+    first: document.querySelector('.findings tbody tr').dataset.code,
+    overflow: document.documentElement.scrollWidth > document.documentElement.clientWidth});
+});
+</script>"""
+
+
 # The time in which a page of 5,000 rows must be ready: twice the aim, as test machines are shared.
 MOST_SECONDS = 6
 
@@ -70,6 +85,29 @@ def check_long_page(browser, folder, text):
     print(f"{rows} rows ready after {seconds:.1f} s")
     return ([f"{rows} rows, not 5000"] if rows != 5000 else []) + (
         [f"ready after {seconds:.1f} s, not {MOST_SECONDS}"] if seconds > MOST_SECONDS else [])
+
+
+def check_repairs(browser, folder, program, sample):
+    """The report on a repair has a row for each solid that was invalid, and works."""
+    def report(kind):
+        return subprocess.run([program, kind, sample], capture_output=True,
+                              check=True).stdout.decode("utf-8")
+
+    codes = [finding["code"] for feature in json.loads(report("repaired"))["features"]
+             for finding in feature["errors"] + feature["warnings"]]
+    page = pathlib.Path(folder) / "repairs.html"
+    page.write_text(report("repaired-html").replace("</body>", REPAIRS + "</body>"),
+                    encoding="utf-8")
+    failures = []
+    for width in (1280, 500):
+        dom = open_page(browser, folder, page, f"--window-size={width},900")
+        found = re.search(r"<title>REPAIRS(.*?)</title>", dom)
+        seen = json.loads(found.group(1).replace("&quot;", '"')) if found else {}
+        expected = {"repairs": 11, "findings": len(codes), "inside": 0, "first": str(max(codes)),
+                    "overflow": False}
+        if seen != expected:
+            failures.append(f"{width}: the report on a repair shows {seen}, not {expected}")
+    return failures
 
 
 def main():
@@ -111,6 +149,7 @@ def main():
             if seen["paths"] < 4 * seen["pictures"] or seen["drawn"] < 4:
                 failures.append(f"{width}: pictures are empty")
         failures += check_long_page(browser, folder, report("html", 5000 // len(findings) + 1))
+        failures += check_repairs(browser, folder, program, root / "examples/invalid.city.jsonl")
     print("\n".join(failures) or f"{len(findings)} findings shown")
     return 1 if failures else 0
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// write_reports json|geojson|html|repaired FILE...: prints the report of some documents, without
-// engines and times; `repaired` the JSON report on the documents after a repair with all remedies.
+// write_reports json|geojson|html|repaired|repaired-html FILE...: prints the report of some
+// documents, without engines and times; `repaired` the JSON report on the documents after a repair
+// with all remedies, `repaired-html` the page.
 // For tests of the form of reports.
 #include <cstdio>
 
@@ -72,13 +73,14 @@ int main(int count, char** arguments) {
   };
   report::ReportHead head;
   head.program_version = "0.1.0";
-  if (kind == "repaired") head.repair = all_remedies();
-  const auto report = kind == "html"      ? report::html_report(sink, head)
-                      : kind == "geojson" ? report::geojson_report(sink, head)
-                                          : report::json_report(sink, head);
+  const bool is_repaired = kind.starts_with("repaired");
+  if (is_repaired) head.repair = all_remedies();
+  const auto report = kind.ends_with("html") ? report::html_report(sink, head)
+                      : kind == "geojson"    ? report::geojson_report(sink, head)
+                                             : report::json_report(sink, head);
   for (int i = 2; i < count; ++i) {
-    const Status added = kind == "repaired" ? add_repaired(*report, arguments[i])
-                                            : add_document(*report, arguments[i]);
+    const Status added =
+        is_repaired ? add_repaired(*report, arguments[i]) : add_document(*report, arguments[i]);
     if (!added) return 1;
   }
   return report->finish() ? 0 : 1;

@@ -121,7 +121,7 @@ std::string SolidRewriter::positions_of(std::span<const Index> ring, bool is_rev
     const Point& point = edit_.solid.vertices()[vertex];
     for (const int axis : axes) {
       if (!positions.empty()) positions += ' ';
-      positions += edit_.solid.lattice().world_text(point[static_cast<std::size_t>(axis)], axis);
+      positions += edit_.solid.lattice().world_text(point[axis], axis);
     }
   }
   return positions;

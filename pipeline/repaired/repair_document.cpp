@@ -45,12 +45,11 @@ std::vector<std::optional<Repaired>> repaired_solids(const Document& document,
   return results;
 }
 
-/// Puts repaired solids into their feature, and appends what became of each that is not valid.
-/// `results` has an entry for each solid of the feature.
-Status apply(Feature& feature, std::span<const std::optional<Repaired>> results,
-             std::vector<SolidRepair>& repairs) {
-  std::vector<formats::SolidEdit> edits;
-  std::vector<std::pair<std::size_t, std::string>> texts;
+/// Appends what became of each solid of a feature that is not valid, and the edits of the repaired
+/// ones, in the same order. `results` has an entry for each solid; edits count from `first` on.
+Status add_results(const Feature& feature, std::span<const std::optional<Repaired>> results,
+                   std::size_t first, std::vector<SolidRepair>& repairs,
+                   std::vector<formats::SolidEdit>& edits) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!results[i]) continue;
     const SubmittedSolid& submitted = feature.solids[i];
@@ -59,14 +58,28 @@ Status apply(Feature& feature, std::span<const std::optional<Repaired>> results,
     if (!results[i]->edits) continue;
     auto solid = repair::on_submitted_vertices(submitted.solid, *results[i]->edits);
     if (!solid) return std::move(solid).error();
-    edits.push_back({i, std::move(solid->solid), std::move(solid->facet_source)});
-    texts.emplace_back(i, repair::summary_json(repairs.back().summary));
+    edits.push_back({first + i, std::move(solid->solid), std::move(solid->facet_source)});
   }
+  return Done{};
+}
+
+/// Puts repaired solids into their feature, and appends what became of each that is not valid.
+Status apply(Feature& feature, std::span<const std::optional<Repaired>> results,
+             std::vector<SolidRepair>& repairs) {
+  std::vector<formats::SolidEdit> edits;
+  const std::size_t first = repairs.size();
+  if (Status added = add_results(feature, results, 0, repairs, edits); !added) return added;
   if (edits.empty()) return Done{};
-  if (const Status replaced = formats::replace_solids(feature, std::move(edits)); !replaced) {
+  std::vector<std::size_t> numbers;
+  for (const formats::SolidEdit& edit : edits) numbers.push_back(edit.number);
+  if (Status replaced = formats::replace_solids(feature, std::move(edits)); !replaced) {
     return replaced;
   }
-  for (const auto& [solid, text] : texts) feature.solids[solid].repair = text;
+  auto number = numbers.begin();
+  for (const SolidRepair& repair : std::span(repairs).subspan(first)) {
+    if (!repair.is_repaired()) continue;
+    feature.solids[*number++].repair = repair::summary_json(repair.summary);
+  }
   return Done{};
 }
 
@@ -102,23 +115,6 @@ Result<DocumentRepair> repair_document(Document& document, delaunay::EngineWorke
 
 namespace {
 
-/// A solid of a document that is repaired as a text.
-struct NumberedSolid {
-  std::size_t number = 0;  // among the solids of all features
-  Feature* feature = nullptr;
-  SubmittedSolid* submitted = nullptr;
-};
-
-std::vector<NumberedSolid> numbered_solids(Document& document) {
-  std::vector<NumberedSolid> solids;
-  for (Feature& feature : document.features) {
-    for (SubmittedSolid& submitted : feature.solids) {
-      solids.push_back({solids.size(), &feature, &submitted});
-    }
-  }
-  return solids;
-}
-
 std::string refusal_note(const SolidRepair& repair, const Error& error) {
   return "the repaired solid of '" + repair.source.object_id + "' cannot be written as GML, " +
          error.message + "; it stays as it was (a city model can have it)";
@@ -135,17 +131,12 @@ Result<RepairedText> repair_gml(ByteView text, const formats::ReadOptions& readi
   repaired.outcome.features = document->features.size();
   repaired.outcome.solids = results.size();
   std::vector<formats::SolidEdit> edits;
-  std::map<std::size_t, std::size_t> repair_of;  // number of a solid -> its entry in the outcome
-  for (const auto& [number, feature, submitted] : numbered_solids(*document)) {
-    const std::optional<Repaired>& result = results[number];
-    if (!result) continue;
-    repair_of.emplace(number, repaired.outcome.repairs.size());
-    repaired.outcome.repairs.push_back(
-        {submitted->source, feature->id, repair::summary_of(submitted->solid, *result)});
-    if (!result->edits) continue;
-    auto solid = repair::on_submitted_vertices(submitted->solid, *result->edits);
-    if (!solid) return std::move(solid).error();
-    edits.push_back({number, std::move(solid->solid), std::move(solid->facet_source)});
+  std::size_t first = 0;
+  for (const Feature& feature : document->features) {
+    const auto own = std::span(results).subspan(first, feature.solids.size());
+    const Status added = add_results(feature, own, first, repaired.outcome.repairs, edits);
+    if (!added) return added.error();
+    first += own.size();
   }
   repaired.outcome.valid_as_read = results.size() - repaired.outcome.repairs.size();
   auto edited = formats::edit_gml(text, reading, edits);
@@ -156,8 +147,13 @@ Result<RepairedText> repair_gml(ByteView text, const formats::ReadOptions& readi
   auto written = formats::read_document(edited->text, Format::gml, keeping);
   if (!written) return std::move(written).error();
   repaired.document = *std::move(written);
+  std::map<std::size_t, SolidRepair*> repair_of;  // by the number of the solid
+  auto edit = edits.begin();
+  for (SolidRepair& repair : repaired.outcome.repairs) {
+    if (repair.is_repaired()) repair_of.emplace((edit++)->number, &repair);
+  }
   for (const auto& [number, error] : edited->refused) {
-    SolidRepair& repair = repaired.outcome.repairs[repair_of.at(number)];
+    SolidRepair& repair = *repair_of.at(number);
     repaired.document.notes.push_back(refusal_note(repair, error));
     const std::set<int> codes = repair.summary.codes_before;
     repair.summary = {};

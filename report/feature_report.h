@@ -90,4 +90,10 @@ struct HtmlOptions {
 std::unique_ptr<FeatureReport> html_report(TextSink sink, ReportHead head,
                                            const HtmlOptions& options = {});
 
+/// The forms of a report.
+enum class ReportForm : std::uint8_t { json, geojson, html, csv, sarif };
+
+/// Writes a report in a form, with the usual options.
+std::unique_ptr<FeatureReport> make_report(ReportForm form, TextSink sink, ReportHead head);
+
 }  // namespace watertight::report

@@ -7,27 +7,6 @@
 #include <utility>
 
 namespace watertight::cli {
-namespace {
-
-std::unique_ptr<report::FeatureReport> make_report(ReportForm form, report::TextSink sink,
-                                                   const report::ReportHead& head) {
-  switch (form) {
-    case ReportForm::geojson:
-      return report::geojson_report(std::move(sink), head);
-    case ReportForm::html:
-      return report::html_report(std::move(sink), head);
-    case ReportForm::csv:
-      return report::csv_report(std::move(sink));
-    case ReportForm::sarif:
-      return report::sarif_report(std::move(sink), head);
-    case ReportForm::json:
-      break;
-  }
-  return report::json_report(std::move(sink), head);
-}
-
-}  // namespace
-
 Status ReportFiles::open(const std::string& path, ReportForm form, const report::ReportHead& head) {
   const auto is_it = [&](const Open& open) { return files::is_same_file(path, open.path); };
   if (std::ranges::any_of(reports_, is_it)) {
@@ -37,7 +16,7 @@ Status ReportFiles::open(const std::string& path, ReportForm form, const report:
   if (!file) return std::move(file).error();
   auto writer = std::make_unique<files::FileWriter>(*std::move(file));
   auto sink = [to = writer.get()](std::string_view text) { return to->write(text); };
-  auto report = make_report(form, std::move(sink), head);
+  auto report = report::make_report(form, std::move(sink), head);
   reports_.push_back({std::move(writer), std::move(report), path});
   return Done{};
 }

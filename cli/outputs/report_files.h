@@ -13,7 +13,7 @@
 
 namespace watertight::cli {
 
-enum class ReportForm : std::uint8_t { json, geojson, html, csv, sarif };
+using report::ReportForm;
 
 class ReportFiles {
  public:

@@ -96,10 +96,10 @@ Result<Document> only_document(const RoutedRequest& request) {
 }
 
 /// The kind of report that a client wants to have of a repair; nothing if it wants the document.
-std::optional<ReportKind> wanted_report(const RoutedRequest& request) {
+std::optional<ReportForm> wanted_report(const RoutedRequest& request) {
   if (const std::string* named = request.target.parameter("to")) {
-    if (*named == "report") return ReportKind::json;
-    return *named == "html" ? std::optional(ReportKind::html) : std::nullopt;
+    if (*named == "report") return ReportForm::json;
+    return *named == "html" ? std::optional(ReportForm::html) : std::nullopt;
   }
   std::vector<std::string_view> offers;
   for (const WrittenFormat& format : kWritten) offers.push_back(format.type);
@@ -107,7 +107,7 @@ std::optional<ReportKind> wanted_report(const RoutedRequest& request) {
   offers.push_back(kHtml);
   const auto chosen = negotiate(request.request.header("accept"), offers);
   if (!chosen || *chosen < kWritten.size()) return std::nullopt;
-  return *chosen == kWritten.size() ? ReportKind::json : ReportKind::html;
+  return *chosen == kWritten.size() ? ReportForm::json : ReportForm::html;
 }
 
 Error cancelled() { return {ErrorCode::cancelled, "the request was cancelled"}; }
@@ -167,7 +167,7 @@ Response post_repair(const RoutedRequest& request) {
   if (!repaired) return to_response(problem_of_body(repaired.error()));
   const auto& [document, outcome] = *repaired;
   const bool is_refused = invalid != nullptr && *invalid == "refuse" && !outcome.is_all_valid();
-  if (is_refused) report = ReportKind::json;
+  if (is_refused) report = ReportForm::json;
   if (!report) return converted(document, *wanted);
   ReportAnswer answer(request.service, *report, rules, "ignore");
   const Status judged = answer.judge_repaired(document, to, outcome);

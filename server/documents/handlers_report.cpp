@@ -34,7 +34,7 @@ ByteSource source_of_export(pipeline::CollectionExport& exported, const CancelPo
 }
 
 /// The kind of report that a request wants; nothing if there is none such.
-std::optional<ReportKind> wanted_kind(const RoutedRequest& request) {
+std::optional<ReportForm> wanted_kind(const RoutedRequest& request) {
   const std::string* named = request.target.parameter("f");
   return named != nullptr ? report_kind_named(*named)
                           : report_kind(request.request.header("accept"));

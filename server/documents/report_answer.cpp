@@ -21,23 +21,6 @@ constexpr std::array<KindName, 5> kKinds{{{"json", kJson},
                                           {"csv", "text/csv"},
                                           {"sarif", "application/sarif+json"}}};
 
-std::unique_ptr<report::FeatureReport> make_report(ReportKind kind, report::TextSink sink,
-                                                   report::ReportHead head) {
-  switch (kind) {
-    case ReportKind::geojson:
-      return report::geojson_report(std::move(sink), std::move(head));
-    case ReportKind::html:
-      return report::html_report(std::move(sink), std::move(head));
-    case ReportKind::csv:
-      return report::csv_report(std::move(sink));
-    case ReportKind::sarif:
-      return report::sarif_report(std::move(sink), std::move(head));
-    case ReportKind::json:
-      break;
-  }
-  return report::json_report(std::move(sink), std::move(head));
-}
-
 /// Counts the judged solids of a feature and the findings between them.
 void count(Metrics* metrics, const pipeline::InspectedFeature& feature) {
   if (metrics == nullptr) return;
@@ -47,28 +30,28 @@ void count(Metrics* metrics, const pipeline::InspectedFeature& feature) {
   }
 }
 
-std::string type_of(ReportKind kind) {
+std::string type_of(ReportForm kind) {
   std::string type(kKinds[static_cast<std::size_t>(kind)].type);
   return type.starts_with("text/") ? type.append("; charset=utf-8") : type;
 }
 
 }  // namespace
 
-std::optional<ReportKind> report_kind(const std::string* accept) {
+std::optional<ReportForm> report_kind(const std::string* accept) {
   std::vector<std::string_view> offers;
   for (const KindName& kind : kKinds) offers.push_back(kind.type);
   const auto chosen = negotiate(accept, offers);
-  return chosen ? std::optional(static_cast<ReportKind>(*chosen)) : std::nullopt;
+  return chosen ? std::optional(static_cast<ReportForm>(*chosen)) : std::nullopt;
 }
 
-std::optional<ReportKind> report_kind_named(std::string_view name) {
+std::optional<ReportForm> report_kind_named(std::string_view name) {
   for (std::size_t i = 0; i < kKinds.size(); ++i) {
-    if (kKinds[i].parameter == name) return static_cast<ReportKind>(i);
+    if (kKinds[i].parameter == name) return static_cast<ReportForm>(i);
   }
   return std::nullopt;
 }
 
-std::string_view name_of(ReportKind kind) {
+std::string_view name_of(ReportForm kind) {
   return kKinds[static_cast<std::size_t>(kind)].parameter;
 }
 
@@ -78,7 +61,7 @@ Response refuse_report_kinds() {
                 "text/csv and application/sarif+json");
 }
 
-ReportAnswer::ReportAnswer(const Service& service, ReportKind kind,
+ReportAnswer::ReportAnswer(const Service& service, ReportForm kind,
                            const pipeline::IngestOptions& options, const std::string& surfaces)
     : service_(service), options_(options), response_{200, type_of(kind), {}, {}} {
   report::ReportHead head;
@@ -88,7 +71,7 @@ ReportAnswer::ReportAnswer(const Service& service, ReportKind kind,
   head.is_strict = options.certify.ladder.strict;
   head.surfaces = surfaces;
   head.repair = options.repair;
-  report_ = make_report(
+  report_ = report::make_report(
       kind,
       [this, longest = service.options.longest_report](std::string_view text) -> Status {
         if (response_.body.size() + text.size() > longest) {

@@ -14,14 +14,14 @@
 
 namespace watertight::server {
 
-enum class ReportKind : std::uint8_t { json, geojson, html, csv, sarif };
+using report::ReportForm;
 
 /// The kind that a client wants by the Accept header, or by the value of `f`; nothing if there is
 /// none such.
-std::optional<ReportKind> report_kind(const std::string* accept);
-std::optional<ReportKind> report_kind_named(std::string_view name);
+std::optional<ReportForm> report_kind(const std::string* accept);
+std::optional<ReportForm> report_kind_named(std::string_view name);
 /// The value of `f` for a kind.
-std::string_view name_of(ReportKind kind);
+std::string_view name_of(ReportForm kind);
 
 Response refuse_report_kinds();
 
@@ -29,7 +29,7 @@ Response refuse_report_kinds();
 class ReportAnswer {
  public:
   /// `surfaces` is the name of the rule for surfaces, "" for the default.
-  ReportAnswer(const Service& service, ReportKind kind, const pipeline::IngestOptions& options,
+  ReportAnswer(const Service& service, ReportForm kind, const pipeline::IngestOptions& options,
                const std::string& surfaces);
   ReportAnswer(ReportAnswer&&) = delete;
 

@@ -67,6 +67,7 @@ class AsioServer final : public HttpServer {
   tcp::acceptor acceptor_;
   std::shared_ptr<TlsContext> tls_;  // null: clients speak plain HTTP
   std::uint16_t port_ = 0;
+  std::size_t making_room_ = 0;  // sessions of closed connections that have not ended yet
   std::atomic<std::size_t> refused_ = 0;
   std::thread thread_;
 };
@@ -135,9 +136,10 @@ void AsioServer::begin_session(tcp::socket socket) {
   ++environment_.sessions;
   const auto place = environment_.connections.insert(environment_.connections.end(), connection);
   asio::co_spawn(context_, run_session(connection, environment_),
-                 [this, place, peer = connection->peer](std::exception_ptr) {
+                 [this, place, connection](std::exception_ptr) {
                    environment_.connections.erase(place);
-                   environment_.connections_of.give_back(peer);
+                   environment_.connections_of.give_back(connection->peer);
+                   if (connection->makes_room) --making_room_;
                    --environment_.sessions;
                  });
 }
@@ -148,7 +150,8 @@ std::optional<Response> AsioServer::refusal_of(const Connection& connection) {
   if (!environment_.connections_of.take(connection.peer, options.connections_per_address)) {
     return too_many("this address has too many connections");
   }
-  const bool is_full = environment_.sessions >= options.connections && !make_room();
+  const std::size_t staying = environment_.sessions - making_room_;
+  const bool is_full = staying >= options.connections && !make_room();
   if (!is_full && environment_.sessions < options.connections + kRefusedAtOnce) return std::nullopt;
   environment_.connections_of.give_back(connection.peer);
   return busy("too many connections");
@@ -170,7 +173,7 @@ bool AsioServer::make_room() {
   Connection* chosen = nullptr;
   double lowest = std::numeric_limits<double>::infinity();
   for (const auto& connection : environment_.connections) {
-    if (connection->state == Connection::State::answering) continue;
+    if (connection->makes_room || connection->state == Connection::State::answering) continue;
     const std::chrono::duration<double> age = now - connection->since;
     const double rate = (1 + static_cast<double>(connection->body_bytes)) / (kMoment + age.count());
     if (rate >= lowest) continue;
@@ -181,7 +184,8 @@ bool AsioServer::make_room() {
   if (chosen->state == Connection::State::receiving) {
     environment_.log("event=closed-for-room peer=" + chosen->peer);
   }
-  chosen->enter(Connection::State::answering);  // so that it is not chosen again
+  chosen->makes_room = true;
+  ++making_room_;
   chosen->stream.close();
   return true;
 }

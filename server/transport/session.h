@@ -81,6 +81,7 @@ struct Connection {
   State state = State::idle;
   std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
   std::uint64_t body_bytes = 0;  // of the request that is being received
+  bool makes_room = false;       // closed for another connection; its session has not ended yet
   void enter(State next) {
     state = next;
     since = std::chrono::steady_clock::now();

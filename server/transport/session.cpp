@@ -165,7 +165,7 @@ class Session {
 };
 
 awaitable<void> Session::run() {
-  connection_->enter(Connection::State::receiving);
+  if (stream_.is_encrypted()) connection_->enter(Connection::State::receiving);
   stream_.expires_after(seconds(options_.header_seconds));
   bool goes_on = co_await stream_.handshake();
   const bool is_greeted = goes_on;

@@ -82,7 +82,9 @@ struct Connection {
   std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
   std::uint64_t body_bytes = 0;  // of the request that is being received
   bool makes_room = false;       // closed for another connection; its session has not ended yet
+  /// Begins an activity; one that goes on keeps its beginning.
   void enter(State next) {
+    if (state == next && next == State::idle) return;
     state = next;
     since = std::chrono::steady_clock::now();
     body_bytes = 0;

@@ -9,6 +9,7 @@
 #include "formats/city_json/city_json.h"
 #include "formats/document.h"
 #include "formats/mesh/mesh_text.h"
+#include "formats/part21/part21.h"
 
 namespace watertight::formats {
 namespace {
@@ -32,6 +33,10 @@ constexpr std::array kEndings{
     Ending{".gml", Format::gml},
     Ending{".citygml", Format::gml},
     Ending{".xml", Format::gml},
+    Ending{".ifc", Format::ifc},
+    Ending{".step", Format::step},
+    Ending{".stp", Format::step},
+    Ending{".p21", Format::step},
 };
 
 // Where the string that starts at `at` ends: the position of its closing quote, or npos.
@@ -123,6 +128,12 @@ Result<Format> format_of_text(std::string_view text) {
     if (text.front() == '{') return json_format(text);
     if (text.front() == '<' || is_utf16_xml(text)) return Format::gml;
     if (is_text_stl_head(text)) return Format::stl;
+    if (is_part21(text)) {
+      const std::size_t schema = text.find("FILE_SCHEMA");
+      const bool is_ifc = schema != std::string_view::npos &&
+                          text.substr(schema, 64).find("IFC") != std::string_view::npos;
+      return is_ifc ? Format::ifc : Format::step;
+    }
     if (text.starts_with("ply\n") || text.starts_with("ply\r\n")) return Format::ply;
     const std::string head = lower_case(text.substr(0, 24));
     for (const std::string_view word : {"srid=", "polyhedralsurface", "solid", "tin"}) {
@@ -136,7 +147,8 @@ Result<Format> format_of_text(std::string_view text) {
   return Error{
       ErrorCode::unsupported,
       "neither the file name nor the first bytes show the format; known formats: CityJSON, "
-      "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, WKT and EWKB"};
+      "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, IFC, STEP, WKT and "
+      "EWKB"};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "formats/gml/gml.h"
 #include "formats/json_fg.h"
 #include "formats/mesh/mesh_text.h"
+#include "formats/part21/curved_files.h"
 #include "formats/text/kept_text.h"
 #include "formats/text/ring_search.h"
 
@@ -23,6 +24,9 @@ Bytes bytes_of(const std::string& text) { return Bytes(text.begin(), text.end())
 bool is_city(Format format) {
   return format == Format::city_json || format == Format::city_json_seq;
 }
+
+// Whether the rings of a format's solids are not in its text.
+bool is_curved(Format format) { return format == Format::ifc || format == Format::step; }
 
 // Errors: malformed for a solid that could not be read, and so cannot be written.
 Status all_readable(std::span<const Feature> features) {
@@ -96,7 +100,7 @@ void keep_bytes(ByteView bytes, Document& document) {
   const auto solids = solids_of(document);
   if (is_stl && is_binary_stl(bytes)) {
     forms.push_back(keep_with_rings(bytes, binary_stl_rings(bytes), solids));
-  } else if (document.format != Format::ewkb) {
+  } else if (document.format != Format::ewkb && !is_curved(document.format)) {
     const auto end = is_stl ? RingEnd::open : RingEnd::closed;
     forms.push_back(keep_with_rings(bytes, find_rings(as_text(bytes), solids, end), solids));
   }
@@ -130,6 +134,10 @@ std::string_view to_string(Format format) {
       return "ply";
     case Format::poly:
       return "poly";
+    case Format::ifc:
+      return "ifc";
+    case Format::step:
+      return "step";
   }
   return "";
 }
@@ -155,9 +163,9 @@ Result<Contract> contract_named(std::string_view name) {
 }
 
 Result<Format> format_named(std::string_view name) {
-  for (const Format format :
-       {Format::city_json, Format::city_json_seq, Format::obj, Format::off, Format::wkt,
-        Format::ewkb, Format::gml, Format::json_fg, Format::stl, Format::ply, Format::poly}) {
+  for (const Format format : {Format::city_json, Format::city_json_seq, Format::obj, Format::off,
+                              Format::wkt, Format::ewkb, Format::gml, Format::json_fg, Format::stl,
+                              Format::ply, Format::poly, Format::ifc, Format::step}) {
     if (to_string(format) == name) return format;
   }
   return Error{ErrorCode::malformed, "stored in an unknown format '" + std::string(name) + "'"};
@@ -197,6 +205,10 @@ Result<Document> read_as(ByteView bytes, Format format, const ReadOptions& optio
       return read_ewkb_document(bytes, options.limits);
     case Format::gml:
       return read_gml_document(bytes, options);
+    case Format::ifc:
+      return read_ifc(as_text(bytes), options);
+    case Format::step:
+      return read_step(as_text(bytes), options);
     default:
       break;
   }
@@ -212,6 +224,8 @@ bool has_byte_order_mark(ByteView bytes, Format format) {
     case Format::ply:
     case Format::poly:
     case Format::wkt:
+    case Format::ifc:
+    case Format::step:
       return as_text(bytes).starts_with(kByteOrderMark);
     case Format::stl:
       return as_text(bytes).starts_with(kByteOrderMark) && !is_binary_stl(bytes);

@@ -33,15 +33,17 @@ enum class Format : std::uint8_t {
   json_fg,  // read only
   stl,      // text and binary; read only, welded by equal coordinates
   ply,      // text and binary; read only
-  poly      // TetGen; read only
+  poly,     // TetGen; read only
+  ifc,      // IFC4, as ISO 10303-21 text; read only, curved solids are tessellated
+  step      // STEP AP203, AP214 and AP242; read only, curved solids are tessellated
 };
 std::string_view to_string(Format format);
 /// The format of this name. Errors: malformed.
 Result<Format> format_named(std::string_view name);
 
 /// The format by the file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb",
-/// "x.ewkb", "x.gml", "x.xml", "x.stl", "x.ply", "x.poly"), else by the first bytes. Errors:
-/// unsupported.
+/// "x.ewkb", "x.gml", "x.xml", "x.stl", "x.ply", "x.poly", "x.ifc", "x.step"), else by the first
+/// bytes. Errors: unsupported.
 Result<Format> detect_format(std::string_view file_name, ByteView bytes);
 
 /// Whether detect_format() knows the ending of a file name.
@@ -87,6 +89,9 @@ struct SubmittedSolid {
   bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
   /// How the solid was repaired, as JSON (docs/report.md, "Repairs"); "" for one that came so.
   std::string repair = {};
+  /// How a curved solid became this polyhedron, as JSON (docs/report.md, "Curved solids"); "" for
+  /// one that came as polygons.
+  std::string tessellation = {};
 };
 
 /// An instance of a geometry template. It is validated where its placement puts it, like a solid,
@@ -180,6 +185,8 @@ struct ReadOptions {
   /// were read. A document other than a sequence keeps its text unless `split_features` is true.
   bool keep_text = false;
   Surfaces surfaces = Surfaces::ignore;
+  /// How far the triangles of curved solids may be from their surfaces, in metres.
+  double chord = 0.01;
 };
 
 /// Reads a document. Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or

@@ -133,6 +133,10 @@ std::string_view format_name(Format format) {
       return "PLY";
     case Format::poly:
       return "POLY";
+    case Format::ifc:
+      return "IFC";
+    case Format::step:
+      return "STEP";
   }
   return "unknown";
 }

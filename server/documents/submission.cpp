@@ -76,6 +76,8 @@ constexpr auto kNames = std::to_array<FormatName>({
     {"stl", "model/stl", Format::stl},
     {"ply", "model/x-ply", Format::ply},
     {"poly", "", Format::poly},
+    {"ifc", "application/x-step", Format::ifc},
+    {"step", "model/step", Format::step},
 });
 
 bool is_allowed(Format format, AcceptedFormats accepted) {

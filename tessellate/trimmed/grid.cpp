@@ -31,6 +31,7 @@ class Gridding {
     cells_.assign(column_count() * row_count(), Cell::outside);
     edge_count_ = result_.region.edges.size();
     for (std::size_t edge = 0; edge < edge_count_; ++edge) mark(edge);
+    mark_points();
     for (std::size_t row = 0; row < row_count(); ++row) fill_row(row);
     number_points();
     for (std::size_t row = 0; row < row_count(); ++row) {
@@ -93,6 +94,27 @@ class Gridding {
       }
       // Lines are crossed by edges with one end below and one not below.
       if (row < vs_.size() && low < vs_[row] && high >= vs_[row]) rows_[row].push_back(edge);
+    }
+  }
+
+  /// Marks the cells that points without an edge may touch: cells inside have no point but corners.
+  void mark_points() {
+    std::vector<bool> has_edge(result_.region.points.size(), false);
+    for (const auto& [from, to] : result_.region.edges) has_edge[from] = has_edge[to] = true;
+    for (std::size_t i = 0; i < has_edge.size(); ++i) {
+      if (has_edge[i]) continue;
+      const Point& p = result_.region.points[i];
+      const auto places = [](const std::vector<double>& lines, double at) {
+        const auto [first, last] = std::equal_range(lines.begin(), lines.end(), at);
+        return std::pair(first - lines.begin(), last - lines.begin());
+      };
+      const auto [left, right] = places(us_, p.x);
+      const auto [below, above] = places(vs_, p.y);
+      for (auto row = below; row <= above; ++row) {
+        for (auto column = left; column <= right; ++column) {
+          cell(static_cast<std::size_t>(column), static_cast<std::size_t>(row)) = Cell::touched;
+        }
+      }
     }
   }
 

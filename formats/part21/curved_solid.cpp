@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/part21/curved_solid.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/json_text.h"
+#include "surfaces/tessellate_boundary.h"
+
+namespace watertight::formats {
+namespace {
+
+void move_boundary(const surfaces::Affine& placement, surfaces::BoundaryRepresentation& boundary) {
+  for (surfaces::Vector3& vertex : boundary.vertices) vertex = moved(placement, vertex);
+  for (surfaces::BoundaryEdge& edge : boundary.edges) move(placement, edge.curve);
+  const bool is_mirrored = is_mirror(placement);
+  for (surfaces::BoundaryFace& face : boundary.faces) {
+    if (face.surface) move(placement, *face.surface);
+    if (!is_mirrored) continue;
+    face.is_along_surface = !face.is_along_surface;
+    for (surfaces::EdgeLoop& loop : face.loops) {
+      std::reverse(loop.begin(), loop.end());
+      for (surfaces::OrientedEdge& edge : loop) edge.is_forward = !edge.is_forward;
+    }
+  }
+}
+
+std::string measures_text(const surfaces::TessellatedBoundary& result, double chord) {
+  const surfaces::TessellationMeasures& measures = result.measures;
+  JsonText json;
+  json.open('{').key("faces").value(measures.faces).key("edges").value(measures.edges);
+  json.key("samples").value(measures.samples).key("triangles").value(measures.triangles);
+  json.key("chord").value(chord).key("chord_error").value(measures.chord_error);
+  json.key("gap").value(measures.gap).key("rounds").value(measures.rounds);
+  json.key("turned").value(measures.turned);
+  json.key("left_out").open('[');
+  for (const surfaces::LeftOutFace& face : result.left_out) {
+    json.open('{').key("face").value(face.name).key("reason").value(face.reason).close('}');
+  }
+  return json.close(']').close('}').take();
+}
+
+}  // namespace
+
+Result<SubmittedSolid> curved_solid(surfaces::BoundaryRepresentation boundary,
+                                    const surfaces::Affine& placement, SolidSource source,
+                                    std::uint32_t srid, double chord, const Limits& limits) {
+  move_boundary(placement, boundary);
+  surfaces::TessellateOptions options;
+  options.chord = chord;
+  options.most_triangles = std::min(limits.facets, limits.vertices);
+  auto result = surfaces::tessellate(boundary, options);
+  if (!result) return std::move(result).error();
+  DecimalVertices vertices;
+  vertices.is_rounded.assign(result->positions.size(), false);
+  for (const auto& position : result->positions) {
+    std::array<GridNumber, 3> decimals;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      GridNumber number{position[axis], position[axis] == 0 ? 0 : result->lattice_exponent};
+      while (number.mantissa != 0 && number.mantissa % 10 == 0) {
+        number = {number.mantissa / 10, number.exponent + 1};
+      }
+      decimals[axis] = number;
+    }
+    vertices.positions.push_back(decimals);
+  }
+  auto solid = indexed_solid(std::move(result->arrays), vertices, std::move(source), limits);
+  if (!solid) return solid;
+  solid->tessellation = measures_text(*result, chord);
+  if (srid == 0) return solid;
+  auto placed = Solid::make(solid->solid.arrays(), solid->solid.lattice(), srid, limits);
+  if (!placed) return std::move(placed).error();
+  solid->solid = *std::move(placed);
+  return solid;
+}
+
+}  // namespace watertight::formats

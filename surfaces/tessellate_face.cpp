@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "surfaces/tessellate_face.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "surfaces/face_loops.h"
+#include "surfaces/invert_point.h"
+#include "tessellate/trimmed/grid.h"
+
+namespace watertight::surfaces {
+namespace {
+
+constexpr int kMostRefinements = 12;  // of refining triangles that are too far from the surface
+constexpr double kClearance = 0.25;   // of a cell: how near a grid point may be to a loop
+constexpr double kChordErrors = 4;    // of a chord: how near a point inside may be to it
+constexpr std::size_t kScaleNet = 4;  // points along u and v at which lengths are compared
+
+class FaceMesh {
+ public:
+  FaceMesh(const Surface& surface, FaceLoops loops, double chord, std::size_t most,
+           VertexPool& pool)
+      : surface_(surface),
+        bends_(surface),
+        loops_(std::move(loops)),
+        chord_(chord),
+        most_(most),
+        pool_(pool) {}
+
+  Result<FaceTriangles> run(bool is_flipped) {
+    measure();
+    make_region();
+    measure_chords();
+    make_grid();
+    if (static_cast<double>(grid_.us.size()) * static_cast<double>(grid_.vs.size()) >
+        static_cast<double>(most_)) {
+      return too_many();
+    }
+    tessellate::TrimmedTriangles mesh;
+    for (int round = 0; round < kMostRefinements; ++round) {
+      mesh = triangulate();
+      if (mesh.conflict) {
+        result_.crossing = edges_of(*mesh.conflict);
+        return std::move(result_);
+      }
+      if (mesh.triangles.size() > most_) return too_many();
+      if (!refine(mesh)) break;
+    }
+    take(mesh, is_flipped);
+    return std::move(result_);
+  }
+
+ private:
+  Error too_many() const {
+    return Error{ErrorCode::limit_exceeded,
+                 "a face needs more than " + std::to_string(most_) + " triangles for this chord",
+                 {},
+                 {}};
+  }
+
+  /// The box of the loops, and how long u and v are on the surface.
+  void measure() {
+    low_ = high_ = loops_.loops.front().front().at;
+    for (const FaceLoop& loop : loops_.loops) {
+      for (const LoopPoint& point : loop) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+          low_[axis] = std::min(low_[axis], point.at[axis]);
+          high_[axis] = std::max(high_[axis], point.at[axis]);
+        }
+      }
+    }
+    Parameters sum{};
+    for (std::size_t i = 0; i < kScaleNet * kScaleNet; ++i) {
+      const auto share = [&](std::size_t at) {
+        return (static_cast<double>(at) + 0.5) / static_cast<double>(kScaleNet);
+      };
+      const SurfacePoint point =
+          point_at(surface_, {low_[0] + share(i % kScaleNet) * (high_[0] - low_[0]),
+                              low_[1] + share(i / kScaleNet) * (high_[1] - low_[1])});
+      sum[0] += length(point.along_u);
+      sum[1] += length(point.along_v);
+    }
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      scale_[axis] = sum[axis] > 0 ? sum[axis] / static_cast<double>(kScaleNet * kScaleNet) : 1;
+    }
+  }
+
+  Point in_plane(const Parameters& at) const {
+    return {(at[0] - low_[0]) * scale_[0], (at[1] - low_[1]) * scale_[1], 0};
+  }
+  Parameters parameters_of(const Point& p) const {
+    return {low_[0] + p.x / scale_[0], low_[1] + p.y / scale_[1]};
+  }
+
+  void make_region() {
+    for (const FaceLoop& loop : loops_.loops) {
+      const auto first = static_cast<Index>(region_.points.size());
+      const auto count = static_cast<Index>(loop.size());
+      for (Index i = 0; i < count; ++i) {
+        region_.points.push_back(in_plane(loop[i].at));
+        region_.edges.push_back({first + i, first + (i + 1) % count});
+        border_.push_back(loop[i]);
+      }
+    }
+  }
+
+  /// Lines so near to each other that a triangle within a cell is near enough to the surface.
+  void make_grid() {
+    const SecondDerivatives bend = bends_.over(low_, high_);
+    const std::array<double, 2> size{high_[0] - low_[0], high_[1] - low_[1]};
+    std::array<double, 2> step = size;
+    const auto limit = [&](std::size_t axis, double second) {
+      if (second > 0) step[axis] = std::min(step[axis], std::sqrt(8 * chord_ / second));
+    };
+    // Each term of the error gets an equal share of the chord.
+    const double terms =
+        (bend.uu > 0 ? 1.0 : 0.0) + (bend.uv > 0 ? 1.0 : 0.0) + (bend.vv > 0 ? 1.0 : 0.0);
+    limit(0, terms * bend.uu);
+    limit(1, terms * bend.vv);
+    // The mixed derivative bounds the product: both steps shrink to the same length.
+    const double product = step[0] * step[1];
+    const double most_product = bend.uv > 0 ? 4 * chord_ / (terms * bend.uv) : product;
+    if (product > most_product) {
+      const double side = std::sqrt(most_product * scale_[0] * scale_[1]);
+      const double u = std::min(step[0], side / scale_[0]);
+      const double v = std::min(step[1], most_product / u);
+      step = {std::min(step[0], most_product / v), v};
+    }
+    grid_.us = lines(size[0], step[0], scale_[0]);
+    grid_.vs = lines(size[1], step[1], scale_[1]);
+  }
+
+  std::vector<double> lines(double size, double step, double scale) const {
+    std::vector<double> result;
+    if (!(size > 0) || !(step > 0)) return result;
+    const double count = std::min(std::ceil(size / step), static_cast<double>(most_));
+    for (double i = 1; i < count; ++i) result.push_back(size * scale * (i / count));
+    return result;
+  }
+
+  /// Triangulates with the points inside; one that no longer is inside, after rounding, goes.
+  tessellate::TrimmedTriangles triangulate() {
+    while (true) {
+      tessellate::Region region = region_;
+      region.points.insert(region.points.end(), inner_.begin(), inner_.end());
+      tessellate::TrimmedTriangles mesh =
+          tessellate::triangulate_trimmed(std::move(region), grid_, kClearance);
+      if (!mesh.conflict) return mesh;
+      const auto border = static_cast<Index>(region_.points.size());
+      const auto last = static_cast<Index>(border + inner_.size());
+      Index unwanted = kNone;
+      for (const tessellate::PlaneEdge& edge : {mesh.conflict->first, mesh.conflict->second}) {
+        for (const Index end : edge) {
+          if (end >= border && end < last) unwanted = end;
+        }
+      }
+      if (unwanted == kNone) return mesh;
+      inner_.erase(inner_.begin() + (unwanted - border));
+    }
+  }
+
+  std::vector<Index> edges_of(const tessellate::RegionConflict& conflict) const {
+    std::vector<Index> edges;
+    for (const tessellate::PlaneEdge& edge : {conflict.first, conflict.second}) {
+      for (const Index end : edge) {
+        if (end >= border_.size()) continue;
+        const auto before = std::find_if(region_.edges.begin(), region_.edges.end(),
+                                         [&](const auto& other) { return other[1] == end; });
+        for (const Index own : {border_[end].edge, border_[(*before)[0]].edge}) {
+          if (own != kNone) edges.push_back(own);
+        }
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+  }
+
+  /// Adds points where triangles may be too far from the surface; false if none is.
+  bool refine(const tessellate::TrimmedTriangles& mesh) {
+    const std::size_t before = inner_.size();
+    for (const Triangle& triangle : mesh.triangles) {
+      if (!is_too_far(mesh, triangle)) continue;
+      // The middle of the longest side that is no part of a loop, else of the triangle.
+      std::optional<Point> middle;
+      double longest = 0;
+      Point centre{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = triangle[k];
+        const Index b = triangle[(k + 1) % 3];
+        const Point& p = mesh.points[a];
+        const Point& q = mesh.points[b];
+        centre = {centre.x + p.x / 3, centre.y + p.y / 3, 0};
+        const double size = (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+        if (is_border(a, b) || size <= longest) continue;
+        longest = size;
+        middle = Point{(p.x + q.x) / 2, (p.y + q.y) / 2, 0};
+      }
+      const Point wanted = middle.value_or(centre);
+      if (!is_beside_border(wanted)) inner_.push_back(wanted);
+    }
+    std::sort(inner_.begin() + static_cast<std::ptrdiff_t>(before), inner_.end());
+    inner_.erase(std::unique(inner_.begin() + static_cast<std::ptrdiff_t>(before), inner_.end()),
+                 inner_.end());
+    return inner_.size() > before;
+  }
+
+  /// How far the middle of each chord around the face is from the surface's point there, in metres.
+  void measure_chords() {
+    for (const tessellate::PlaneEdge& edge : region_.edges) {
+      const LoopPoint& a = border_[edge[0]];
+      const LoopPoint& b = border_[edge[1]];
+      const Parameters at{(a.at[0] + b.at[0]) / 2, (a.at[1] + b.at[1]) / 2};
+      const Vector3 middle = (pool_.place(a.vertex) + pool_.place(b.vertex)) * 0.5;
+      chord_errors_.push_back(length(point_at(surface_, at).place - middle));
+    }
+  }
+
+  /// Whether a point is so near to a chord around the face that the surface may pass the chord
+  /// there: a triangle between them might stand outside the face.
+  bool is_beside_border(const Point& p) const {
+    for (std::size_t i = 0; i < region_.edges.size(); ++i) {
+      const double reach = kChordErrors * chord_errors_[i];
+      const Point& a = region_.points[region_.edges[i][0]];
+      const Point& b = region_.points[region_.edges[i][1]];
+      if (p.x < std::min(a.x, b.x) - reach || p.x > std::max(a.x, b.x) + reach ||
+          p.y < std::min(a.y, b.y) - reach || p.y > std::max(a.y, b.y) + reach) {
+        continue;
+      }
+      const double u = b.x - a.x;
+      const double v = b.y - a.y;
+      const double squared = u * u + v * v;
+      const double along =
+          squared > 0 ? std::clamp(((p.x - a.x) * u + (p.y - a.y) * v) / squared, 0.0, 1.0) : 0.0;
+      const double x = p.x - a.x - along * u;
+      const double y = p.y - a.y - along * v;
+      if (x * x + y * y <= reach * reach) return true;
+    }
+    return false;
+  }
+
+  bool is_border(Index a, Index b) const {
+    const auto border = static_cast<Index>(region_.points.size());
+    if (a >= border || b >= border) return false;
+    return region_.edges[a][1] == b || region_.edges[b][1] == a;
+  }
+
+  bool is_too_far(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
+    Parameters low = parameters_of(mesh.points[triangle[0]]);
+    Parameters high = low;
+    for (const Index corner : triangle) {
+      const Parameters at = parameters_of(mesh.points[corner]);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        low[axis] = std::min(low[axis], at[axis]);
+        high[axis] = std::max(high[axis], at[axis]);
+      }
+    }
+    const double u = high[0] - low[0];
+    const double v = high[1] - low[1];
+    const SecondDerivatives bend = bends_.over(low, high);
+    return (bend.uu * u * u + 2 * bend.uv * u * v + bend.vv * v * v) / 8 > chord_;
+  }
+
+  void take(const tessellate::TrimmedTriangles& mesh, bool is_flipped) {
+    std::vector<Index> vertex(mesh.points.size());
+    for (Index i = 0; i < mesh.points.size(); ++i) {
+      vertex[i] = i < border_.size()
+                      ? border_[i].vertex
+                      : pool_.add(point_at(surface_, parameters_of(mesh.points[i])).place);
+    }
+    result_.gap = loops_.gap;
+    for (const Triangle& t : mesh.triangles) {
+      measure_error(mesh, t);
+      Triangle triangle{vertex[t[0]], vertex[t[1]], vertex[t[2]]};
+      if (is_flipped) std::swap(triangle[1], triangle[2]);
+      const bool is_collapsed =
+          triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
+      if (!is_collapsed) result_.triangles.push_back(triangle);
+    }
+  }
+
+  /// Measures how far the middle of a triangle is from the surface's point with its coordinates.
+  void measure_error(const tessellate::TrimmedTriangles& mesh, const Triangle& t) {
+    Parameters centre{};
+    std::array<Vector3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Parameters at = parameters_of(mesh.points[t[k]]);
+      centre = {centre[0] + at[0] / 3, centre[1] + at[1] / 3};
+      corners[k] = point_at(surface_, at).place;
+    }
+    const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double size = length(normal);
+    if (!(size > 0)) return;
+    const Vector3 offset = point_at(surface_, centre).place - corners[0];
+    result_.chord_error = std::max(result_.chord_error, std::abs(dot(offset, normal)) / size);
+  }
+
+  const Surface& surface_;
+  Bends bends_;
+  FaceLoops loops_;
+  double chord_;
+  std::size_t most_;
+  VertexPool& pool_;
+  Parameters low_{};
+  Parameters high_{};
+  Parameters scale_{};                // metres per unit of u and v, in the mean
+  tessellate::Region region_;         // in metres
+  std::vector<LoopPoint> border_;     // by point of the region
+  std::vector<double> chord_errors_;  // by edge of the region
+  tessellate::PlaneGrid grid_;
+  std::vector<Point> inner_;  // points inside besides those of the grid
+  FaceTriangles result_;
+};
+
+/// A cone has two halves, which meet in its tip: the one on which a place lies.
+Surface half_with(const Surface& surface, const Vector3& place, double tolerance) {
+  const std::vector<Pole> poles = poles_of(surface);
+  if (!surface.is_endless[1] || poles.size() != 1) return surface;
+  const Vector3 tip = poles[0].place;
+  const double u = surface.u_breaks.front();
+  const double v = surface.v_breaks.back();
+  const Vector3 across =
+      point_at(surface, {u, v}).place - point_at(surface, {u + surface.period(0) / 2, v}).place;
+  const Vector3 axis = across * (1 / length(across));
+  // Half a turn about a line through the tip.
+  Affine turn;
+  for (std::size_t i = 0; i < 3; ++i) {
+    turn.columns[i] = axis * (2 * axis[i]);
+    turn.columns[i][i] -= 1;
+  }
+  turn.shift = tip - moved(turn, tip);
+  Surface other = surface;
+  move(turn, other);
+  const double gap = Inverter(surface, tolerance).invert(place, {}).gap;
+  return Inverter(other, tolerance).invert(place, {}).gap < gap ? other : surface;
+}
+
+}  // namespace
+
+Result<FaceTriangles> tessellate_face(const BoundaryFace& face,
+                                      const std::vector<EdgeSamples>& edges, double tolerance,
+                                      double chord, std::size_t most, VertexPool& pool) {
+  Surface surface = *face.surface;
+  if (!face.loops.empty() && !face.loops[0].empty()) {
+    const EdgeSamples& samples = edges[face.loops[0][0].edge];
+    const bool is_at_tip = length(pool.place(samples.front()) - pool.place(samples.back())) == 0;
+    surface = half_with(
+        surface, pool.place(is_at_tip ? samples[samples.size() / 2] : samples.back()), tolerance);
+  }
+  auto loops = loops_of(face, surface, false, edges, tolerance, chord, pool);
+  bool is_transposed = false;
+  if (!loops && winds_around_v(loops.error())) {
+    is_transposed = true;
+    surface = transposed(surface);
+    loops = loops_of(face, surface, true, edges, tolerance, chord, pool);
+  }
+  if (!loops) return std::move(loops).error();
+  const bool is_turned = loops->is_turned;
+  FaceMesh mesh(surface, *std::move(loops), chord, most, pool);
+  return mesh.run((face.is_along_surface == is_transposed) != is_turned);
+}
+
+}  // namespace watertight::surfaces

@@ -10,6 +10,7 @@ namespace watertight::surfaces {
 
 namespace {
 
+constexpr double kSmallestPart = 1e-9;  // of a piece
 const double kHalfRoot = std::sqrt(0.5);  // the weight of the middle point of a quarter turn
 
 Vector3 unit(const Vector3& a) { return a * (1 / length(a)); }
@@ -70,7 +71,6 @@ Curve part_of(const Curve& curve, double from, double to) {
     while (to <= from) to += period;
   }
   Curve part;
-  part.breaks.push_back(from);
   for (std::size_t i = 0; i < 3 * count; ++i) {
     const double turns = period * static_cast<double>(i / count);
     if (i >= count && !curve.is_closed) break;
@@ -78,7 +78,9 @@ Curve part_of(const Curve& curve, double from, double to) {
     const double end = curve.breaks[i % count + 1] + turns;
     const double low = std::max(start, from);
     const double high = std::min(end, to);
-    if (!(low < high)) continue;
+    // A rest that rounding leaves beside a break is no piece.
+    if (!(high - low > kSmallestPart * (end - start))) continue;
+    if (part.breaks.empty()) part.breaks.push_back(low);
     part.pieces.push_back(part_of(curve.pieces[i % count], (low - start) / (end - start),
                                   high == end ? 1 : (high - start) / (end - start)));
     part.breaks.push_back(high);

@@ -284,16 +284,32 @@ class LoopMaker {
         return no_loops("a loop winds around the surface more than once");
       }
     }
+    turn_inner_loops(up.empty() && down.empty());
     if (up.empty() && down.empty()) {
       if (!result_.loops.empty()) return Done{};
       if (holes_.empty()) return no_loops("the face has no loop");
-    } else if (!result_.loops.empty()) {
-      return no_loops("loops around the surface beside a loop around a part of it");
     }
     if (up.size() > 1 || down.size() > 1) return no_loops("more than two loops around the surface");
     if (up.empty() && !add_pole_chain(false, up)) return no_loops("the face has no lower end");
     if (down.empty() && !add_pole_chain(true, down)) return no_loops("the face has no upper end");
     return cut(up.front(), down.front());
+  }
+
+  /// A face is in one piece: one loop is around it, and the others are holes, however they turn.
+  void turn_inner_loops(bool has_outer) {
+    std::vector<FaceLoop>& loops = result_.loops;
+    if (loops.empty()) return;
+    const auto outer = std::max_element(loops.begin(), loops.end(),
+                                        [](const FaceLoop& a, const FaceLoop& b) {
+                                          return signed_area(a) < signed_area(b);
+                                        });
+    if (has_outer) std::iter_swap(loops.begin(), outer);
+    for (std::size_t i = has_outer ? 1 : 0; i < loops.size(); ++i) {
+      Chain hole{std::move(loops[i]), {}};
+      turn(hole);
+      holes_.push_back(std::move(hole.points));
+    }
+    loops.resize(has_outer ? 1 : 0);
   }
 
   bool add_pole_chain(bool is_upper, std::vector<Chain>& chains) {

@@ -65,6 +65,7 @@ Result<EdgePoints> sample_edge(const BoundaryRepresentation& solid, Index edge, 
   // A curve whose ends are one point may be given as open, and an edge may start at either end.
   const bool is_backward = !curve.is_closed && to < from;
   const Curve part = is_backward ? reversed(part_of(curve, to, from)) : part_of(curve, from, to);
+  // An edge shorter than rounding has no piece.
   for (std::size_t i = 0; i < part.pieces.size(); ++i) {
     if (i > 0) result.inner.push_back(part.pieces[i].points.front().place());
     if (Status status = add_piece(part.pieces[i], chord, most, result.inner); !status) {

@@ -168,7 +168,9 @@ Result<Curve> trimmed(const EntityReader& reader, const PlainEntity& from, doubl
     start = curve.breaks.front();
     end = curve.breaks.back();
   }
-  return surfaces::part_of(curve, start, end);
+  Curve part = surfaces::part_of(curve, start, end);
+  if (part.pieces.empty()) return reader.error(from, "a curve of no length");
+  return part;
 }
 
 Result<Curve> composite(const EntityReader& reader, const PlainEntity& from, double radians,

@@ -29,6 +29,8 @@ struct ValidateCommand {
   std::vector<std::string> interior_shells;  // files with cavities of the document's only solid
   RuleChoice rules;
   std::string surfaces = "check";  // "ignore", "check", "judge" or "as-solids"
+  double chord = formats::kUsualChord;  // metres, for curved solids
+  std::string output;              // file for the document as it was read, "" for none
   double seconds_per_solid = 0;    // the time that engines may take; 0: by the size of the solid
   std::string engine = "auto";     // "auto", "cgal" or "tetgen"
   std::optional<double> tolerant_metres;  // the snap distance of a tolerant verdict as well
@@ -51,6 +53,7 @@ struct EncodeCommand {
   std::string rejected;  // file for what --invalid skip leaves out, "" for none
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
+  double chord = formats::kUsualChord;  // metres, for curved solids
   std::string purpose = "size";     // or "ranges"
   bool is_bare = false;             // one blob instead of a Watertight file
   bool explains = false;            // print the bytes that the solids take in each mode
@@ -111,6 +114,7 @@ struct ConvertCommand {
   std::string input;
   std::string output;
   std::string surfaces = "ignore";  // or "as-solids"
+  double chord = formats::kUsualChord;  // metres, for curved solids
 };
 Exit run(const ConvertCommand& command);
 
@@ -125,6 +129,7 @@ struct RepairCommand {
   bool leaves_times_out = false;
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
+  double chord = formats::kUsualChord;  // metres, for curved solids
   bool is_quiet = false;
   std::size_t jobs = 1;
   std::string program_version;
@@ -175,6 +180,7 @@ Exit run(const ServeCommand& command);
 struct RowsCommand {
   std::vector<std::string> files;
   std::string surfaces = "ignore";  // or "as-solids"
+  double chord = formats::kUsualChord;  // metres, for curved solids
 };
 /// Writes the solids of documents as rows for COPY to standard output.
 Exit run(const RowsCommand& command);
@@ -197,6 +203,7 @@ struct IngestCommand {
   double weld_metres = 0;
   RuleChoice rules;
   std::string surfaces = "ignore";  // or "as-solids"
+  double chord = formats::kUsualChord;  // metres, for curved solids
   std::string contract = "exact";
   bool is_json = false;
   bool is_quiet = false;

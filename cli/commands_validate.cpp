@@ -10,6 +10,7 @@
 #include "cli/findings/baseline.h"
 #include "cli/findings/explain.h"
 #include "cli/findings/finding_list.h"
+#include "cli/outputs/documents.h"
 #include "cli/outputs/report_files.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
@@ -99,6 +100,8 @@ class Validation {
   bool is_in_use(const std::string& path) const;
   void validate_file(const files::InputFile& source);
   Result<files::OpenedInput> open_source(const files::InputFile& source);
+  Result<files::OpenedInput> read_and_save(const files::InputFile& source,
+                                           formats::ReadOptions reading);
   Result<formats::FeatureReader> with_cavities(const files::InputFile& source);
   Result<pipeline::StreamOutcome> stream(const std::string& file, files::OpenedInput& input);
   void fail(const std::string& file, const Error& error) {
@@ -243,9 +246,30 @@ Result<formats::FeatureReader> Validation::with_cavities(const files::InputFile&
   return formats::FeatureReader::of(*std::move(document));
 }
 
+Result<files::OpenedInput> Validation::read_and_save(const files::InputFile& source,
+                                                     formats::ReadOptions reading) {
+  reading.split_features = false;
+  if (is_in_use(command_.output)) {
+    return Error{ErrorCode::invalid_argument,
+                 "the output '" + command_.output + "' would replace the input"};
+  }
+  const auto whole = files::read_whole(source, options_.certify.limits);
+  if (!whole) return whole.error();
+  auto input = files::load_input(whole->name, whole->bytes, reading);
+  if (!input) return std::move(input).error();
+  if (Status saved = save_document(input->document, command_.output); !saved) {
+    Error error = std::move(saved).error();
+    error.message.insert(0, command_.output + ": ");
+    return error;
+  }
+  return files::OpenedInput{formats::FeatureReader::of(std::move(input->document)), std::nullopt};
+}
+
 Result<files::OpenedInput> Validation::open_source(const files::InputFile& source) {
   formats::ReadOptions reading;
   reading.surfaces = surface_rule(command_.surfaces).reading;
+  reading.chord = command_.chord;
+  if (!command_.output.empty()) return read_and_save(source, reading);
   if (command_.interior_shells.empty()) return files::open_input(source, reading);
   auto reader = with_cavities(source);
   if (!reader) return std::move(reader).error();

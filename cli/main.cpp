@@ -70,6 +70,15 @@ void add_surfaces(CLI::App& sub, std::string& surfaces) {
       ->capture_default_str();
 }
 
+/// Adds how near the triangles of curved solids are to their surfaces.
+void add_chord(CLI::App& sub, double& chord) {
+  sub.add_option("--chord", chord,
+                 "largest distance of triangles from the surfaces of curved solids, metres")
+      ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
+      ->type_name("M")
+      ->capture_default_str();
+}
+
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("validate", "Report which solids are valid, and why others are not");
@@ -92,6 +101,7 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
                   "are solids")
       ->check(CLI::IsMember({"ignore", "check", "judge", "as-solids"}))
       ->capture_default_str();
+  add_chord(*sub, command.chord);
   sub->add_option("--interior-shell", command.interior_shells,
                   "file with a cavity of the file's one solid; can be repeated")
       ->allow_extra_args(false);
@@ -119,6 +129,23 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
     }
     chosen = [&] { return run(command); };
   });
+}
+
+void add_tessellate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
+  CLI::App* sub = app.add_subcommand(
+      "tessellate", "Write curved solids (IFC, STEP) as polyhedra, and report which are valid");
+  sub->add_option("IN", command.files, "document; - for standard input")->required()->expected(1);
+  sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
+  add_chord(*sub, command.chord);
+  sub->add_option("--report", command.report, "write the report as JSON");
+  sub->add_option("--html", command.html, "write the report as a page with pictures");
+  sub->add_flag("--no-times", command.leaves_times_out,
+                "reports without times: same input, same bytes");
+  add_rules(*sub, command.rules);
+  sub->add_flag("-q,--quiet", command.is_quiet, "the summary and the table only");
+  add_jobs(*sub, command.jobs);
+  command.program_version = WATERTIGHT_VERSION;
+  sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
 void add_advise(CLI::App& app, AdviseCommand& command, Chosen& chosen) {
@@ -174,6 +201,7 @@ void add_encode(CLI::App& app, EncodeCommand& command, Chosen& chosen) {
                   "findings to FILE.report.json");
   add_rules(*sub, command.rules);
   add_surfaces(*sub, command.surfaces);
+  add_chord(*sub, command.chord);
   add_purpose(*sub, command.purpose);
   sub->add_flag("--bare", command.is_bare, "write the one solid's blob, without its document");
   add_contract(*sub, command.contract);
@@ -199,6 +227,7 @@ void add_append(CLI::App& app, AppendCommand& command, Chosen& chosen) {
       ->capture_default_str();
   add_rules(*sub, encode.rules);
   add_surfaces(*sub, encode.surfaces);
+  add_chord(*sub, encode.chord);
   add_contract(*sub, encode.contract);
   add_jobs(*sub, encode.jobs);
   sub->callback([&] { chosen = [&] { return run(command); }; });
@@ -251,6 +280,7 @@ void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
   sub->add_option("IN", command.input, "document; - for standard input")->required();
   sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
   add_surfaces(*sub, command.surfaces);
+  add_chord(*sub, command.chord);
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
@@ -287,6 +317,7 @@ void add_repair(CLI::App& app, RepairCommand& command, Chosen& chosen) {
       ->capture_default_str();
   add_rules(*sub, command.rules);
   add_surfaces(*sub, command.surfaces);
+  add_chord(*sub, command.chord);
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
   add_jobs(*sub, command.jobs, "solids repaired at once");
   command.program_version = WATERTIGHT_VERSION;
@@ -346,6 +377,7 @@ void add_ingest(CLI::App& app, IngestCommand& command, Chosen& chosen) {
   sub->get_option("--weld")->needs(repair);
   add_rules(*sub, command.rules);
   add_surfaces(*sub, command.surfaces);
+  add_chord(*sub, command.chord);
   add_contract(*sub, command.contract);
   sub->add_flag("--json", command.is_json, "the table as one line of JSON");
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
@@ -362,6 +394,7 @@ void add_rows(CLI::App& app, RowsCommand& command, Chosen& chosen) {
   sub->add_option("FILE", command.files, "documents, also in folders, archives and compressed")
       ->required();
   add_surfaces(*sub, command.surfaces);
+  add_chord(*sub, command.chord);
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
@@ -480,6 +513,7 @@ int run_command_line(int argc, char** argv) {
   app.footer(
       "Exit status: 0 all valid (warnings allowed), 1 something invalid, 2 error, 3 undecided");
   ValidateCommand validate_command;
+  ValidateCommand tessellate_command;
   AdviseCommand advise_command;
   EncodeCommand encode_command;
   DecodeCommand decode_command;
@@ -499,6 +533,7 @@ int run_command_line(int argc, char** argv) {
   CompactCommand compact_command;
   Chosen chosen;
   add_validate(app, validate_command, chosen);
+  add_tessellate(app, tessellate_command, chosen);
   add_advise(app, advise_command, chosen);
   add_encode(app, encode_command, chosen);
   add_decode(app, decode_command, chosen);

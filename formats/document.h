@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,6 +63,24 @@ struct SolidSource {
   std::uint64_t line = 0;  // the line of a GML document on which the solid starts, from 1; else 0
 };
 
+/// How a curved solid became a polyhedron. Lengths are in metres.
+struct Tessellation {
+  std::uint64_t faces = 0;  // of the curved solid
+  std::uint64_t edges = 0;
+  std::uint64_t samples = 0;    // vertices on edges, ends included
+  std::uint64_t triangles = 0;  // of curved faces
+  double chord = 0;             // the limit (ReadOptions::chord)
+  double chord_error = 0;       // the largest measured distance of a triangle from its surface
+  double gap = 0;               // the largest distance of an edge from a surface of its faces
+  int rounds = 1;               // of sampling edges
+  std::uint64_t turned = 0;     // faces that the file has the wrong way round
+  struct LeftOut {
+    std::string face;  // "#104"
+    std::string reason;
+  };
+  std::vector<LeftOut> left_out = {};
+};
+
 /// True for a geometry whose boundaries are facets without shells around them (MultiSurface,
 /// CompositeSurface, and the surfaces of GML), by its type. Pointers to its places have no step for
 /// the shell.
@@ -89,9 +108,7 @@ struct SubmittedSolid {
   bool is_origin_rounded = false;  // LatticePoints::is_origin_rounded
   /// How the solid was repaired, as JSON (docs/report.md, "Repairs"); "" for one that came so.
   std::string repair = {};
-  /// How a curved solid became this polyhedron, as JSON (docs/report.md, "Curved solids"); "" for
-  /// one that came as polygons.
-  std::string tessellation = {};
+  std::optional<Tessellation> tessellation = {};  // of a curved solid
 };
 
 /// An instance of a geometry template. It is validated where its placement puts it, like a solid,
@@ -176,6 +193,8 @@ enum class Surfaces : std::uint8_t {
   as_solids  // as `read`, but one that is one closed shell is a solid of its feature instead
 };
 
+inline constexpr double kUsualChord = 0.01;  // metres
+
 struct ReadOptions {
   Limits limits;
   /// Whether a CityJSON document becomes one feature per top-level object (stores), or one feature
@@ -186,7 +205,7 @@ struct ReadOptions {
   bool keep_text = false;
   Surfaces surfaces = Surfaces::ignore;
   /// How far the triangles of curved solids may be from their surfaces, in metres.
-  double chord = 0.01;
+  double chord = kUsualChord;
 };
 
 /// Reads a document. Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or

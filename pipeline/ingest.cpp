@@ -319,7 +319,10 @@ InspectedFeature inspect(Feature feature, delaunay::EngineWorkers* workers,
     inspected.solids.push_back(
         {submitted.source,
          cell.is_ready ? std::move(cell.inspections[i])
-                       : certify(submitted.solid, workers, options_for(submitted, options))});
+                       : certify(submitted.solid, workers, options_for(submitted, options)),
+         {},
+         {},
+         submitted.tessellation});
   }
   inspected.feature = std::move(feature);
   inspected.own = inspected.solids.size();

@@ -34,6 +34,7 @@ struct InspectedSolid {
   std::optional<validate::SurfaceFacts> surface = {};
   /// What became of a solid that was not valid as it was read, if solids were repaired.
   std::optional<repair::RepairSummary> repair = {};
+  std::optional<formats::Tessellation> tessellation = {};  // of a curved solid
 };
 
 /// The number of surfaces of a feature, or of many.

@@ -93,6 +93,19 @@ void write_remedies(JsonText& json, const repair::RepairOptions& options) {
   json.key("islands").value(std::uint64_t{options.most_islands});
 }
 
+void write_tessellation(JsonText& json, const formats::Tessellation& made) {
+  json.key("tessellation").open('{');
+  json.key("faces").value(made.faces).key("edges").value(made.edges);
+  json.key("samples").value(made.samples).key("triangles").value(made.triangles);
+  json.key("chord").value(made.chord).key("chord_error").value(made.chord_error);
+  json.key("gap").value(made.gap).key("rounds").value(made.rounds);
+  json.key("turned").value(made.turned).key("left_out").open('[');
+  for (const formats::Tessellation::LeftOut& face : made.left_out) {
+    json.open('{').key("face").value(face.face).key("reason").value(face.reason).close('}');
+  }
+  json.close(']').close('}');
+}
+
 void write_primitive(JsonText& json, const pipeline::InspectedSolid& solid, bool has_times) {
   const Report& report = solid.inspection.report;
   json.open('{').key("id").value(solid_id(solid.source));
@@ -120,6 +133,7 @@ void write_primitive(JsonText& json, const pipeline::InspectedSolid& solid, bool
   write_ladder(json, report, has_times);
   if (solid.surface) write_surface(json, *solid.surface);
   if (report.measures) json.key("measures").raw(validate::report_measures_json(*report.measures));
+  if (solid.tessellation) write_tessellation(json, *solid.tessellation);
   if (solid.repair) json.key("repair").raw(repair::summary_json(*solid.repair));
   if (has_times) json.key("seconds").value(report.seconds);
   json.close('}');

@@ -79,7 +79,8 @@ void run(const char* path, double chord) {
         volume += measures->volume;
         area += measures->area;
       }
-      const bool is_whole = submitted.tessellation.find("\"left_out\":[]") != std::string::npos;
+      const auto& made = submitted.tessellation;
+      const bool is_whole = !made || made->left_out.empty();
       if (inspection.certified && is_whole) continue;
       rest.append("    ").append(submitted.source.object_id).append(":");
       std::size_t shown = 0;
@@ -93,8 +94,11 @@ void run(const char* path, double chord) {
         if (++shown <= 6) rest.append(" ").append(std::to_string(finding.code));
       }
       rest.append(" (").append(std::to_string(shown)).append(" errors)");
-      const std::size_t left_out = submitted.tessellation.find("\"left_out");
-      if (!is_whole) rest.append(" ").append(submitted.tessellation.substr(left_out));
+      if (!is_whole) {
+        for (const auto& face : made->left_out) {
+          rest.append(" ").append(face.face).append(" ").append(face.reason).append(";");
+        }
+      }
       rest.append("\n");
     }
   }

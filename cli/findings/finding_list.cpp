@@ -2,6 +2,8 @@
 #include "cli/findings/finding_list.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <tuple>
 
 #include "base/quantity.h"
@@ -19,6 +21,40 @@ struct Line {
 Urgency urgency_of(const Finding& finding, bool is_known) {
   if (finding.severity == Severity::error) return is_known ? Urgency::known_error : Urgency::error;
   return is_known ? Urgency::known_warning : Urgency::warning;
+}
+
+std::string brief(double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", number);
+  return text.data();
+}
+
+/// What was made of a curved solid, on a line.
+std::string tessellation_words(const pipeline::InspectedSolid& solid) {
+  const formats::Tessellation& made = *solid.tessellation;
+  std::string text = report::object_words(solid.source) + ": ";
+  text.append(quantity(made.faces, "face")).append(", ").append(quantity(made.edges, "edge"));
+  if (const auto& measures = solid.inspection.report.measures) {
+    text.append(" became ").append(quantity(measures->facets, "facet"));
+    text.append(", volume ").append(brief(measures->volume)).append(" m3");
+  }
+  text.append(", chord error ").append(brief(made.chord_error)).append(" m (limit ");
+  text.append(brief(made.chord)).append(")");
+  if (made.gap > 0) {
+    text.append(", edges up to ").append(brief(made.gap)).append(" m off faces");
+  }
+  if (made.turned > 0) text.append(", ").append(quantity(made.turned, "face")).append(" turned");
+  return text;
+}
+
+void add_tessellation(std::vector<Line>& lines, const pipeline::InspectedSolid& solid) {
+  if (!solid.tessellation) return;
+  lines.push_back({Urgency::rest, tessellation_words(solid)});
+  for (const auto& face : solid.tessellation->left_out) {
+    lines.push_back({Urgency::error, "face " + face.face + " of " +
+                                         report::object_words(solid.source) +
+                                         " is left out: " + face.reason});
+  }
 }
 
 /// Adds the lines that a report has beside its findings.
@@ -81,6 +117,7 @@ FeatureLines lines_of(const std::string& file, const pipeline::InspectedFeature&
   }
   for (const pipeline::InspectedSolid& solid : feature.solids) {
     add_remarks(lines, report::object_words(solid.source), solid.inspection.report);
+    add_tessellation(lines, solid);
   }
   for (const pipeline::InspectedGroup& group : feature.groups) add_remarks(lines, group);
   return arranged(name_of(file, feature.feature.id), feature.verdict(), std::move(lines));

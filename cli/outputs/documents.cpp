@@ -38,4 +38,15 @@ Exit save_documents(std::span<const Document> documents, const std::string& inpu
   return Exit::valid;
 }
 
+Status save_document(const Document& document, const std::string& output) {
+  const auto format = files::format_of_name(output);
+  if (!format) return format.error();
+  const auto bytes = pipeline::convert_document(document, *format);
+  if (!bytes) return bytes.error();
+  auto file = files::FileWriter::open(output);
+  if (!file) return file.error();
+  if (Status written = file->write(as_text(*bytes)); !written) return written;
+  return file->commit();
+}
+
 }  // namespace watertight::cli

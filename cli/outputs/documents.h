@@ -19,4 +19,8 @@ namespace watertight::cli {
 Exit save_documents(std::span<const Document> documents, const std::string& input,
                     const std::string& output, std::optional<Format> standard = {});
 
+/// Writes one document to a file in the format of its ending. Errors: those of writing and of
+/// converting; invalid_argument for an ending of no format.
+Status save_document(const Document& document, const std::string& output);
+
 }  // namespace watertight::cli

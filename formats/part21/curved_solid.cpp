@@ -2,9 +2,9 @@
 #include "formats/part21/curved_solid.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
-#include "base/json_text.h"
 #include "surfaces/tessellate_boundary.h"
 
 namespace watertight::formats {
@@ -25,19 +25,22 @@ void move_boundary(const surfaces::Affine& placement, surfaces::BoundaryRepresen
   }
 }
 
-std::string measures_text(const surfaces::TessellatedBoundary& result, double chord) {
+Tessellation account_of(const surfaces::TessellatedBoundary& result, double chord) {
   const surfaces::TessellationMeasures& measures = result.measures;
-  JsonText json;
-  json.open('{').key("faces").value(measures.faces).key("edges").value(measures.edges);
-  json.key("samples").value(measures.samples).key("triangles").value(measures.triangles);
-  json.key("chord").value(chord).key("chord_error").value(measures.chord_error);
-  json.key("gap").value(measures.gap).key("rounds").value(measures.rounds);
-  json.key("turned").value(measures.turned);
-  json.key("left_out").open('[');
+  Tessellation account{measures.faces,
+                       measures.edges,
+                       measures.samples,
+                       measures.triangles,
+                       chord,
+                       measures.chord_error,
+                       measures.gap,
+                       measures.rounds,
+                       measures.turned,
+                       {}};
   for (const surfaces::LeftOutFace& face : result.left_out) {
-    json.open('{').key("face").value(face.name).key("reason").value(face.reason).close('}');
+    account.left_out.push_back({face.name, face.reason});
   }
-  return json.close(']').close('}').take();
+  return account;
 }
 
 }  // namespace
@@ -66,7 +69,7 @@ Result<SubmittedSolid> curved_solid(surfaces::BoundaryRepresentation boundary,
   }
   auto solid = indexed_solid(std::move(result->arrays), vertices, std::move(source), limits);
   if (!solid) return solid;
-  solid->tessellation = measures_text(*result, chord);
+  solid->tessellation = account_of(*result, chord);
   if (srid == 0) return solid;
   auto placed = Solid::make(solid->solid.arrays(), solid->solid.lattice(), srid, limits);
   if (!placed) return std::move(placed).error();

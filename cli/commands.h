@@ -28,11 +28,11 @@ struct ValidateCommand {
   std::string explain;                       // a code to explain instead of validating, "" for none
   std::vector<std::string> interior_shells;  // files with cavities of the document's only solid
   RuleChoice rules;
-  std::string surfaces = "check";  // "ignore", "check", "judge" or "as-solids"
+  std::string surfaces = "check";       // "ignore", "check", "judge" or "as-solids"
   double chord = formats::kUsualChord;  // metres, for curved solids
-  std::string output;              // file for the document as it was read, "" for none
-  double seconds_per_solid = 0;    // the time that engines may take; 0: by the size of the solid
-  std::string engine = "auto";     // "auto", "cgal" or "tetgen"
+  std::string output;                   // file for the document as it was read, "" for none
+  double seconds_per_solid = 0;  // the time that engines may take; 0: by the size of the solid
+  std::string engine = "auto";   // "auto", "cgal" or "tetgen"
   std::optional<double> tolerant_metres;  // the snap distance of a tolerant verdict as well
   bool leaves_times_out = false;
   bool is_quiet = false;         // no line per finding
@@ -52,11 +52,11 @@ struct EncodeCommand {
   std::string invalid = "keep";
   std::string rejected;  // file for what --invalid skip leaves out, "" for none
   RuleChoice rules;
-  std::string surfaces = "ignore";  // or "as-solids"
+  std::string surfaces = "ignore";      // or "as-solids"
   double chord = formats::kUsualChord;  // metres, for curved solids
-  std::string purpose = "size";     // or "ranges"
-  bool is_bare = false;             // one blob instead of a Watertight file
-  bool explains = false;            // print the bytes that the solids take in each mode
+  std::string purpose = "size";         // or "ranges"
+  bool is_bare = false;                 // one blob instead of a Watertight file
+  bool explains = false;                // print the bytes that the solids take in each mode
   std::size_t jobs = 1;
 };
 /// Encodes all documents; several go to a folder, each to a file of its own.
@@ -113,7 +113,7 @@ Exit run(const InfoCommand& command);
 struct ConvertCommand {
   std::string input;
   std::string output;
-  std::string surfaces = "ignore";  // or "as-solids"
+  std::string surfaces = "ignore";      // or "as-solids"
   double chord = formats::kUsualChord;  // metres, for curved solids
 };
 Exit run(const ConvertCommand& command);
@@ -128,7 +128,7 @@ struct RepairCommand {
   std::string html;    // file for an HTML page, "" for none
   bool leaves_times_out = false;
   RuleChoice rules;
-  std::string surfaces = "ignore";  // or "as-solids"
+  std::string surfaces = "ignore";      // or "as-solids"
   double chord = formats::kUsualChord;  // metres, for curved solids
   bool is_quiet = false;
   std::size_t jobs = 1;
@@ -179,7 +179,7 @@ Exit run(const ServeCommand& command);
 
 struct RowsCommand {
   std::vector<std::string> files;
-  std::string surfaces = "ignore";  // or "as-solids"
+  std::string surfaces = "ignore";      // or "as-solids"
   double chord = formats::kUsualChord;  // metres, for curved solids
 };
 /// Writes the solids of documents as rows for COPY to standard output.
@@ -202,7 +202,7 @@ struct IngestCommand {
   std::string remedies;  // that repair what is not valid before it is stored, "" for none
   double weld_metres = 0;
   RuleChoice rules;
-  std::string surfaces = "ignore";  // or "as-solids"
+  std::string surfaces = "ignore";      // or "as-solids"
   double chord = formats::kUsualChord;  // metres, for curved solids
   std::string contract = "exact";
   bool is_json = false;

@@ -10,7 +10,7 @@ namespace watertight::surfaces {
 
 namespace {
 
-constexpr double kSmallestPart = 1e-9;  // of a piece
+constexpr double kSmallestPart = 1e-9;    // of a piece
 const double kHalfRoot = std::sqrt(0.5);  // the weight of the middle point of a quarter turn
 
 Vector3 unit(const Vector3& a) { return a * (1 / length(a)); }

@@ -299,10 +299,9 @@ class LoopMaker {
   void turn_inner_loops(bool has_outer) {
     std::vector<FaceLoop>& loops = result_.loops;
     if (loops.empty()) return;
-    const auto outer = std::max_element(loops.begin(), loops.end(),
-                                        [](const FaceLoop& a, const FaceLoop& b) {
-                                          return signed_area(a) < signed_area(b);
-                                        });
+    const auto outer = std::max_element(
+        loops.begin(), loops.end(),
+        [](const FaceLoop& a, const FaceLoop& b) { return signed_area(a) < signed_area(b); });
     if (has_outer) std::iter_swap(loops.begin(), outer);
     for (std::size_t i = has_outer ? 1 : 0; i < loops.size(); ++i) {
       Chain hole{std::move(loops[i]), {}};

@@ -156,7 +156,24 @@ class Tessellation {
     return Done{};
   }
 
+  /// Lists the curved faces at each vertex that edges have.
+  void list_curved_faces() {
+    curved_faces_.assign(pool_.size(), {});
+    for (Index face = 0; face < solid_.faces.size(); ++face) {
+      if (!solid_.faces[face].surface) continue;
+      for (const EdgeLoop& loop : solid_.faces[face].loops) {
+        for (const OrientedEdge& oriented : loop) {
+          for (const Index vertex : samples_[oriented.edge]) {
+            std::vector<Index>& faces = curved_faces_[vertex];
+            if (faces.empty() || faces.back() != face) faces.push_back(face);
+          }
+        }
+      }
+    }
+  }
+
   Status mesh_faces(bool is_last_round) {
+    list_curved_faces();
     triangles_.assign(solid_.faces.size(), {});
     result_.left_out.clear();
     result_.measures.triangles = 0;
@@ -169,8 +186,8 @@ class Tessellation {
         continue;
       }
       if (!face.surface) continue;
-      auto mesh =
-          tessellate_face(face, samples_, solid_.tolerance, chord_, options_.most_triangles, pool_);
+      auto mesh = tessellate_face(face, samples_, {f, curved_faces_}, solid_.tolerance, chord_,
+                                  options_.most_triangles, pool_);
       if (!mesh && mesh.error().code == ErrorCode::limit_exceeded) return mesh.error();
       if (!mesh) {
         result_.left_out.push_back({face.name, mesh.error().message});
@@ -273,9 +290,14 @@ class Tessellation {
       const BoundaryFace& face = solid_.faces[f];
       if (face.surface || !face.unreadable.empty()) continue;
       std::vector<std::vector<Index>>& rings = rings_[f];
-      for (const EdgeLoop& loop : face.loops) rings.push_back(ring_of(loop));
-      std::size_t outer = face.outer.value_or(0);
-      for (std::size_t i = 1; !face.outer && i < rings.size(); ++i) {
+      for (const EdgeLoop& loop : face.loops) {
+        // A ring of two vertices is a slit, which has no part in the boundary.
+        std::vector<Index> ring = ring_of(loop);
+        if (ring.size() >= 3) rings.push_back(std::move(ring));
+      }
+      const bool has_outer = face.outer && rings.size() == face.loops.size();
+      std::size_t outer = has_outer ? *face.outer : 0;
+      for (std::size_t i = 1; !has_outer && i < rings.size(); ++i) {
         if (length(area_of(rings[i])) > length(area_of(rings[outer]))) outer = i;
       }
       if (outer < rings.size()) std::swap(rings[0], rings[outer]);
@@ -371,6 +393,7 @@ class Tessellation {
   }
 
   void add_polygon(Index face) {
+    if (rings_[face].empty()) return;
     for (std::vector<Index>& ring : rings_[face]) {
       if (is_turned_[face]) std::reverse(ring.begin(), ring.end());
       result_.arrays.ring_vertices.insert(result_.arrays.ring_vertices.end(), ring.begin(),
@@ -386,6 +409,7 @@ class Tessellation {
   std::vector<double> finer_;  // edge -> by how much its chord is shortened
   VertexPool pool_;
   std::vector<EdgeSamples> samples_;
+  std::vector<std::vector<Index>> curved_faces_;        // vertex -> faces
   std::vector<std::vector<Triangle>> triangles_;        // by face
   std::vector<std::vector<std::vector<Index>>> rings_;  // by face, of planar ones: positions
   std::vector<Index> number_;                           // vertex of the pool -> position

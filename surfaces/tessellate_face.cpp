@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,18 @@
 #include "tessellate/trimmed/grid.h"
 
 namespace watertight::surfaces {
+
+bool FaceNeighbours::share(Index a, Index b) const {
+  const auto faces_at = [&](Index vertex) {
+    return vertex < faces.size() ? std::span<const Index>(faces[vertex]) : std::span<const Index>();
+  };
+  const std::span<const Index> own = faces_at(a);
+  const std::span<const Index> others = faces_at(b);
+  return std::any_of(own.begin(), own.end(), [&](Index other) {
+    return other != face && std::find(others.begin(), others.end(), other) != others.end();
+  });
+}
+
 namespace {
 
 constexpr int kMostRefinements = 12;  // of refining triangles that are too far from the surface
@@ -22,11 +35,12 @@ constexpr std::size_t kScaleNet = 4;  // points along u and v at which lengths a
 
 class FaceMesh {
  public:
-  FaceMesh(const Surface& surface, FaceLoops loops, double chord, std::size_t most,
-           VertexPool& pool)
+  FaceMesh(const Surface& surface, FaceLoops loops, const FaceNeighbours& neighbours, double chord,
+           std::size_t most, VertexPool& pool)
       : surface_(surface),
         bends_(surface),
         loops_(std::move(loops)),
+        neighbours_(neighbours),
         chord_(chord),
         most_(most),
         pool_(pool) {}
@@ -148,7 +162,7 @@ class FaceMesh {
       tessellate::Region region = region_;
       region.points.insert(region.points.end(), inner_.begin(), inner_.end());
       tessellate::TrimmedTriangles mesh =
-          tessellate::triangulate_trimmed(std::move(region), grid_, kClearance);
+          tessellate::triangulate_trimmed(std::move(region), grid_, clearance_);
       if (!mesh.conflict) return mesh;
       const auto border = static_cast<Index>(region_.points.size());
       const auto last = static_cast<Index>(border + inner_.size());
@@ -184,6 +198,7 @@ class FaceMesh {
   bool refine(const tessellate::TrimmedTriangles& mesh) {
     const std::size_t before = inner_.size();
     for (const Triangle& triangle : mesh.triangles) {
+      split_shared_sides(mesh, triangle);
       if (!is_too_far(mesh, triangle)) continue;
       // The middle of the longest side that is no part of a loop, else of the triangle.
       std::optional<Point> middle;
@@ -216,15 +231,16 @@ class FaceMesh {
       const LoopPoint& b = border_[edge[1]];
       const Parameters at{(a.at[0] + b.at[0]) / 2, (a.at[1] + b.at[1]) / 2};
       const Vector3 middle = (pool_.place(a.vertex) + pool_.place(b.vertex)) * 0.5;
-      chord_errors_.push_back(length(point_at(surface_, at).place - middle));
+      clearance_.of_edges.push_back(kChordErrors * length(point_at(surface_, at).place - middle));
     }
+    clearance_.of_cell = kClearance;
   }
 
   /// Whether a point is so near to a chord around the face that the surface may pass the chord
   /// there: a triangle between them might stand outside the face.
   bool is_beside_border(const Point& p) const {
     for (std::size_t i = 0; i < region_.edges.size(); ++i) {
-      const double reach = kChordErrors * chord_errors_[i];
+      const double reach = clearance_.of_edges[i];
       const Point& a = region_.points[region_.edges[i][0]];
       const Point& b = region_.points[region_.edges[i][1]];
       if (p.x < std::min(a.x, b.x) - reach || p.x > std::max(a.x, b.x) + reach ||
@@ -241,6 +257,21 @@ class FaceMesh {
       if (x * x + y * y <= reach * reach) return true;
     }
     return false;
+  }
+
+  /// Puts a point into each side of a triangle inside the face that joins two points of another
+  /// curved face: the other face may have the same side, although it lies elsewhere.
+  void split_shared_sides(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = triangle[k];
+      const Index b = triangle[(k + 1) % 3];
+      if (a >= border_.size() || b >= border_.size() || is_border(a, b)) continue;
+      if (!neighbours_.share(border_[a].vertex, border_[b].vertex)) continue;
+      const Point& p = mesh.points[a];
+      const Point& q = mesh.points[b];
+      const Point middle{(p.x + q.x) / 2, (p.y + q.y) / 2, 0};
+      if (!is_beside_border(middle)) inner_.push_back(middle);
+    }
   }
 
   bool is_border(Index a, Index b) const {
@@ -302,15 +333,16 @@ class FaceMesh {
   const Surface& surface_;
   Bends bends_;
   FaceLoops loops_;
+  const FaceNeighbours& neighbours_;
   double chord_;
   std::size_t most_;
   VertexPool& pool_;
   Parameters low_{};
   Parameters high_{};
-  Parameters scale_{};                // metres per unit of u and v, in the mean
-  tessellate::Region region_;         // in metres
-  std::vector<LoopPoint> border_;     // by point of the region
-  std::vector<double> chord_errors_;  // by edge of the region
+  Parameters scale_{};             // metres per unit of u and v, in the mean
+  tessellate::Region region_;      // in metres
+  std::vector<LoopPoint> border_;  // by point of the region
+  tessellate::Clearance clearance_;
   tessellate::PlaneGrid grid_;
   std::vector<Point> inner_;  // points inside besides those of the grid
   FaceTriangles result_;
@@ -342,7 +374,8 @@ Surface half_with(const Surface& surface, const Vector3& place, double tolerance
 }  // namespace
 
 Result<FaceTriangles> tessellate_face(const BoundaryFace& face,
-                                      const std::vector<EdgeSamples>& edges, double tolerance,
+                                      const std::vector<EdgeSamples>& edges,
+                                      const FaceNeighbours& neighbours, double tolerance,
                                       double chord, std::size_t most, VertexPool& pool) {
   Surface surface = *face.surface;
   if (!face.loops.empty() && !face.loops[0].empty()) {
@@ -360,7 +393,7 @@ Result<FaceTriangles> tessellate_face(const BoundaryFace& face,
   }
   if (!loops) return std::move(loops).error();
   const bool is_turned = loops->is_turned;
-  FaceMesh mesh(surface, *std::move(loops), chord, most, pool);
+  FaceMesh mesh(surface, *std::move(loops), neighbours, chord, most, pool);
   return mesh.run((face.is_along_surface == is_transposed) != is_turned);
 }
 

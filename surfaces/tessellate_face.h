@@ -20,12 +20,21 @@ struct FaceTriangles {
   std::vector<Index> crossing;
 };
 
+/// The curved faces that meet at each vertex on an edge.
+struct FaceNeighbours {
+  Index face = kNone;  // the face itself
+  const std::vector<std::vector<Index>>& faces;
+  /// Whether both vertices belong to one other curved face.
+  bool share(Index a, Index b) const;
+};
+
 /// Tessellates a face on a surface so that its triangles are nowhere farther than `chord` from the
 /// surface. `edges` has the vertices along each edge. Errors: unsupported with the reason for loops
 /// that bound no part of the surface; limit_exceeded for more than `most` triangles. Cost:
 /// O(n log n) for n triangles.
 Result<FaceTriangles> tessellate_face(const BoundaryFace& face,
-                                      const std::vector<EdgeSamples>& edges, double tolerance,
+                                      const std::vector<EdgeSamples>& edges,
+                                      const FaceNeighbours& neighbours, double tolerance,
                                       double chord, std::size_t most, VertexPool& pool);
 
 }  // namespace watertight::surfaces

@@ -27,16 +27,9 @@ void move_boundary(const surfaces::Affine& placement, surfaces::BoundaryRepresen
 
 Tessellation account_of(const surfaces::TessellatedBoundary& result, double chord) {
   const surfaces::TessellationMeasures& measures = result.measures;
-  Tessellation account{measures.faces,
-                       measures.edges,
-                       measures.samples,
-                       measures.triangles,
-                       chord,
-                       measures.chord_error,
-                       measures.gap,
-                       measures.rounds,
-                       measures.turned,
-                       {}};
+  Tessellation account{
+      measures.faces,       measures.edges, measures.samples, measures.triangles, chord,
+      measures.chord_error, measures.gap,   measures.rounds,  measures.turned,    {}};
   for (const surfaces::LeftOutFace& face : result.left_out) {
     account.left_out.push_back({face.name, face.reason});
   }

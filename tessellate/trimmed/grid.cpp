@@ -20,7 +20,7 @@ enum class Cell : std::uint8_t { outside, inside, touched };
 
 class Gridding {
  public:
-  Gridding(Region loops, const PlaneGrid& grid, double clearance)
+  Gridding(Region loops, const PlaneGrid& grid, const Clearance& clearance)
       : us_(grid.us), vs_(grid.vs), clearance_(clearance) {
     result_.region = std::move(loops);
   }
@@ -68,16 +68,21 @@ class Gridding {
     return a.x + share * (b.x - a.x);
   }
 
+  double reach_of(std::size_t edge) const {
+    return clearance_.of_edges.empty() ? 0 : clearance_.of_edges[edge];
+  }
+
   /// Marks the cells that an edge may meet, and lists it with the lines v that it crosses.
   void mark(std::size_t edge) {
     const Point& a = start(edge);
     const Point& b = end(edge);
     const auto [low, high] = std::minmax(a.y, b.y);
     const auto [left, right] = std::minmax(a.x, b.x);
+    const double reach = reach_of(edge);
     const double margin =
-        kMargin * (std::max(std::abs(left), std::abs(right)) + (us_.back() - us_.front()));
+        reach + kMargin * (std::max(std::abs(left), std::abs(right)) + (us_.back() - us_.front()));
     const double margin_v =
-        kMargin * (std::max(std::abs(low), std::abs(high)) + (vs_.back() - vs_.front()));
+        reach + kMargin * (std::max(std::abs(low), std::abs(high)) + (vs_.back() - vs_.front()));
     const std::size_t first = place(vs_, low - margin_v);
     const std::size_t last = place(vs_, high + margin_v);
     for (std::size_t row = first; row <= last; ++row) {
@@ -175,17 +180,19 @@ class Gridding {
     const auto reach = [&](const std::vector<double>& lines, std::size_t at) {
       const double before = at > 0 ? lines[at] - lines[at - 1] : lines[at + 1] - lines[at];
       const double after = at + 1 < lines.size() ? lines[at + 1] - lines[at] : before;
-      return clearance_ * std::min(before, after);
+      return clearance_.of_cell * std::min(before, after);
     };
-    const double reach_u = us_.size() > 1 ? reach(us_, j) : 0;
-    const double reach_v = vs_.size() > 1 ? reach(vs_, k) : 0;
+    const double cell_u = us_.size() > 1 ? reach(us_, j) : 0;
+    const double cell_v = vs_.size() > 1 ? reach(vs_, k) : 0;
     for (std::size_t edge = 0; edge < edge_count_; ++edge) {
+      const double reach_u = std::max(cell_u, reach_of(edge));
+      const double reach_v = std::max(cell_v, reach_of(edge));
       const Point& a = start(edge);
       const Point& b = end(edge);
       if (std::max(a.y, b.y) < p.y - reach_v || std::min(a.y, b.y) > p.y + reach_v) continue;
       if (std::max(a.x, b.x) < p.x - reach_u || std::min(a.x, b.x) > p.x + reach_u) continue;
       if (turn(a, b, p) == 0) return true;
-      if (clearance_ > 0 && meets_box(a, b, p, reach_u, reach_v)) return true;
+      if (reach_u > 0 && reach_v > 0 && meets_box(a, b, p, reach_u, reach_v)) return true;
     }
     return false;
   }
@@ -225,7 +232,7 @@ class Gridding {
 
   const std::vector<double>& us_;
   const std::vector<double>& vs_;
-  double clearance_;
+  const Clearance& clearance_;
   std::size_t edge_count_ = 0;  // of the loops
   std::vector<Cell> cells_;
   std::vector<std::vector<std::size_t>> rows_;  // line v -> edges that cross it
@@ -235,11 +242,12 @@ class Gridding {
 
 }  // namespace
 
-GridRegion region_with_grid(Region loops, const PlaneGrid& grid, double clearance) {
+GridRegion region_with_grid(Region loops, const PlaneGrid& grid, const Clearance& clearance) {
   return Gridding(std::move(loops), grid, clearance).run();
 }
 
-TrimmedTriangles triangulate_trimmed(Region loops, const PlaneGrid& grid, double clearance) {
+TrimmedTriangles triangulate_trimmed(Region loops, const PlaneGrid& grid,
+                                     const Clearance& clearance) {
   GridRegion gridded = region_with_grid(std::move(loops), grid, clearance);
   // Corners of cells between four cells that are inside have no edge, and are no part of the rest.
   TrimmedTriangles result;

@@ -27,11 +27,16 @@ struct GridRegion {
   std::vector<Triangle> cells;  // the triangles of the cells wholly inside; left turns
 };
 
-/// Puts the grid points that lie strictly inside the loops into their region, those that have
-/// `clearance` times their cell's sides around them free of loops, roughly (0: all). Requires loops
-/// that bound a region; other loops give a region that sweep_region() refuses as well. Cost:
-/// linear in points and in the cells that loops meet, with the cells of the grid.
-GridRegion region_with_grid(Region loops, const PlaneGrid& grid, double clearance = 0);
+/// How far grid points stay away from loops, roughly. By default none does.
+struct Clearance {
+  double of_cell = 0;            // from all loops: a share of the sides of the cells around a point
+  std::vector<double> of_edges;  // from each edge; empty: none
+};
+
+/// Puts the grid points that lie strictly inside the loops, and clear of them, into their region.
+/// Requires loops that bound a region; other loops give a region that sweep_region() refuses as
+/// well. Cost: linear in points and in the cells that loops meet, with the cells of the grid.
+GridRegion region_with_grid(Region loops, const PlaneGrid& grid, const Clearance& clearance = {});
 
 /// The constrained Delaunay triangulation of loops with the grid points strictly inside: vertices
 /// are the points of the loops, then these grid points.
@@ -40,6 +45,7 @@ struct TrimmedTriangles {
   std::vector<Triangle> triangles;
   std::optional<RegionConflict> conflict;
 };
-TrimmedTriangles triangulate_trimmed(Region loops, const PlaneGrid& grid, double clearance = 0);
+TrimmedTriangles triangulate_trimmed(Region loops, const PlaneGrid& grid,
+                                     const Clearance& clearance = {});
 
 }  // namespace watertight::tessellate

@@ -61,8 +61,8 @@ inline constexpr std::string_view kItemParameters[] = {
 
 /// The parameters of a document that is judged, without and with storing it.
 inline constexpr std::string_view kValidateParameters[] = {
-    "f",       "surfaces",       "planarity", "planarity-angle",
-    "overlap", "exact-overlaps", "proof",     "strict"};
+    "f",     "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps",
+    "proof", "strict",   "chord"};
 inline constexpr std::string_view kReportParameters[] = {
     "f",     "proven", "surfaces", "planarity",   "planarity-angle", "overlap", "exact-overlaps",
     "proof", "strict", "filter",   "filter-lang", "filter-crs",      "bbox",    "bbox-crs"};

@@ -139,7 +139,7 @@ const std::vector<Route>& general_routes() {
        read,
        post_validate,
        {std::begin(kValidateParameters), std::end(kValidateParameters)}},
-      {"POST", "/convert", computing, read, post_convert, {"f", "to", "surfaces"}},
+      {"POST", "/convert", computing, read, post_convert, {"f", "to", "surfaces", "chord"}},
       {"POST",
        "/repair",
        computing,

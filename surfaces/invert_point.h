@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "surfaces/pieces.h"
+#include "surfaces/curves/pieces.h"
 
 namespace watertight::surfaces {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "surfaces/elementary.h"
+#include "surfaces/curves/elementary.h"
 
 namespace watertight::surfaces {
 namespace {

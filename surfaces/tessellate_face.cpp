@@ -12,6 +12,7 @@
 #include "surfaces/face_loops.h"
 #include "surfaces/invert_point.h"
 #include "tessellate/trimmed/grid.h"
+#include "tessellate/trimmed/plane_predicates.h"
 
 namespace watertight::surfaces {
 
@@ -29,6 +30,7 @@ bool FaceNeighbours::share(Index a, Index b) const {
 namespace {
 
 constexpr int kMostRefinements = 12;  // of refining triangles that are too far from the surface
+constexpr std::size_t kMeasured = 4;  // parts of a side of a triangle between measured points
 constexpr double kClearance = 0.25;   // of a cell: how near a grid point may be to a loop
 constexpr double kChordErrors = 4;    // of a chord: how near a point inside may be to it
 constexpr std::size_t kScaleNet = 4;  // points along u and v at which lengths are compared
@@ -146,6 +148,51 @@ class FaceMesh {
     }
     grid_.us = lines(size[0], step[0], scale_[0]);
     grid_.vs = lines(size[1], step[1], scale_[1]);
+    if (has_pole()) use_short_rows();
+  }
+
+  bool has_pole() const {
+    for (const Pole& pole : poles_of(surface_)) {
+      const auto axis = static_cast<std::size_t>(pole.direction);
+      if (pole.direction == 1 && (low_[axis] == pole.at || high_[axis] == pole.at)) return true;
+    }
+    return false;
+  }
+
+  /// Rows of the grid get fewer points where they are shorter, near a pole.
+  void use_short_rows() {
+    const tessellate::PlaneGrid grid = std::exchange(grid_, {});
+    const double middle = (low_[0] + high_[0]) / 2;
+    const auto length_at = [&](double y) {
+      return length(point_at(surface_, {middle, parameters_of({0, y, 0})[1]}).along_u);
+    };
+    double longest = 0;
+    for (const double y : grid.vs) longest = std::max(longest, length_at(y));
+    if (!(longest > 0)) return;
+    const double size = (high_[0] - low_[0]) * scale_[0];
+    for (const double y : grid.vs) {
+      const double share = length_at(y) / longest;
+      const double count = std::ceil(static_cast<double>(grid.us.size() + 1) * share);
+      for (double i = 1; i < count; ++i) {
+        const Point p{size * (i / count), y, 0};
+        if (is_inside(p) && !is_beside_border(p)) inner_.push_back(p);
+      }
+    }
+  }
+
+  /// Whether a point of the plane is strictly inside the loops, exactly.
+  bool is_inside(const Point& p) const {
+    bool is_odd = false;
+    for (const tessellate::PlaneEdge& edge : region_.edges) {
+      const Point* a = &region_.points[edge[0]];
+      const Point* b = &region_.points[edge[1]];
+      if ((a->y <= p.y) == (b->y <= p.y)) continue;
+      if (a->y > b->y) std::swap(a, b);
+      const int side = tessellate::turn(*a, *b, p);
+      if (side == 0) return false;
+      if (side > 0) is_odd = !is_odd;
+    }
+    return is_odd;
   }
 
   std::vector<double> lines(double size, double step, double scale) const {
@@ -293,7 +340,35 @@ class FaceMesh {
     const double u = high[0] - low[0];
     const double v = high[1] - low[1];
     const SecondDerivatives bend = bends_.over(low, high);
-    return (bend.uu * u * u + 2 * bend.uv * u * v + bend.vv * v * v) / 8 > chord_;
+    if ((bend.uu * u * u + 2 * bend.uv * u * v + bend.vv * v * v) / 8 <= chord_) return false;
+    return is_measured_far(mesh, triangle);
+  }
+
+  /// The bound allows for more than surfaces do: measures at points spread over the triangle, which
+  /// must be nearer than half of the chord.
+  bool is_measured_far(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
+    std::array<Parameters, 3> at;
+    std::array<Vector3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      at[k] = parameters_of(mesh.points[triangle[k]]);
+      corners[k] = point_at(surface_, at[k]).place;
+    }
+    for (std::size_t i = 0; i <= kMeasured; ++i) {
+      for (std::size_t j = 0; i + j <= kMeasured; ++j) {
+        const std::array<double, 3> weights{
+            static_cast<double>(i) / static_cast<double>(kMeasured),
+            static_cast<double>(j) / static_cast<double>(kMeasured),
+            static_cast<double>(kMeasured - i - j) / static_cast<double>(kMeasured)};
+        Parameters place{};
+        Vector3 flat{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          place = {place[0] + weights[k] * at[k][0], place[1] + weights[k] * at[k][1]};
+          flat = flat + corners[k] * weights[k];
+        }
+        if (length(point_at(surface_, place).place - flat) > chord_ / 2) return true;
+      }
+    }
+    return false;
   }
 
   void take(const tessellate::TrimmedTriangles& mesh, bool is_flipped) {

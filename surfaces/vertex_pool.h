@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/point.h"
-#include "surfaces/bezier.h"
+#include "surfaces/curves/bezier.h"
 
 namespace watertight::surfaces {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "surfaces/nurbs.h"
+#include "surfaces/curves/nurbs.h"
 
 namespace watertight::formats {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "formats/part21/part21.h"
 #include "surfaces/boundary_representation.h"
-#include "surfaces/elementary.h"
+#include "surfaces/curves/elementary.h"
 
 namespace watertight::formats {
 

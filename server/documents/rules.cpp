@@ -26,6 +26,17 @@ Result<formats::Surfaces> stored_surfaces(const Target& target) {
                "surfaces is ignore or as-solids where they are stored"};
 }
 
+Result<double> chord_of(const Target& target) {
+  constexpr double kMostChord = 1000;
+  double chord = formats::kUsualChord;
+  const std::string* text = target.parameter("chord");
+  if (text == nullptr) return chord;
+  if (Status read = pipeline::read_number("chord", *text, false, kMostChord, chord); !read) {
+    return read.error();
+  }
+  return chord;
+}
+
 Status read_rules(const Target& target, pipeline::IngestOptions& options) {
   for (const std::string_view name : pipeline::kRuleNames) {
     const std::string* value = target.parameter(name);

@@ -8,6 +8,7 @@
 #include "formats/city_json/city_json.h"
 #include "pipeline/collections/collection_header.h"
 #include "pipeline/container.h"
+#include "server/documents/rules.h"
 
 namespace watertight::server {
 namespace {
@@ -272,6 +273,12 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   const bool is_stored = accepted == AcceptedFormats::with_ids;
   options.keep_text = is_stored || surfaces != formats::Surfaces::as_solids;
   options.surfaces = surfaces;
+  const auto chord = chord_of(request.target);
+  if (!chord) {
+    submission.problem = to_problem(chord.error());
+    return submission;
+  }
+  options.chord = *chord;
   format = format_of_content(*format, body);
   const bool is_sequence_body = *format == Format::city_json_seq;
   submission.problem =
@@ -315,6 +322,12 @@ Conversion read_conversion(const RoutedRequest& request, std::optional<Format> t
   options.split_features = false;
   options.surfaces = surfaces;
   options.keep_text = !to;
+  const auto chord = chord_of(request.target);
+  if (!chord) {
+    conversion.problem = to_problem(chord.error());
+    return conversion;
+  }
+  options.chord = *chord;
   const ByteView bytes = as_bytes(request.request.body);
   auto document = to ? pipeline::read_to_convert(bytes, body.format, *to, options)
                      : formats::read_document(bytes, body.format, options);

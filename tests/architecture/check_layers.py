@@ -34,7 +34,7 @@ import subprocess
 import sys
 import tempfile
 
-FOLDERS = ["base", "workers", "geometry", "tessellate", "delaunay", "validate", "fill", "repair", "codec",
+FOLDERS = ["base", "workers", "geometry", "tessellate", "surfaces", "delaunay", "validate", "fill", "repair", "codec",
            "columns", "archives", "projection", "tiles", "formats", "packing", "store", "cql2", "pipeline", "geopackage", "files", "report", "web", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surfaces/pieces.h"
+#include "surfaces/curves/pieces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,60 +129,57 @@ std::vector<Pole> poles_of(const Surface& surface) {
 
 Bends::Bends(const Surface& surface) : surface_(surface) {
   const std::size_t columns = surface.u_breaks.size() - 1;
-  for (std::size_t i = 0; i < surface.patches.size(); ++i) {
-    const BezierPatch& patch = surface.patches[i];
-    const double width_u = surface.u_breaks[i % columns + 1] - surface.u_breaks[i % columns];
-    const double width_v = surface.v_breaks[i / columns + 1] - surface.v_breaks[i / columns];
-    const auto has_weight = [&](const WeightedPoint& p) {
-      return p.weight != patch.points.front().weight;
-    };
-    const bool is_rational = std::any_of(patch.points.begin(), patch.points.end(), has_weight);
-    const std::size_t parts_u = is_rational && patch.columns > 2 ? kParts : 1;
-    const std::size_t parts_v = is_rational && patch.rows() > 2 ? kParts : 1;
-    SecondDerivatives most;
-    for (std::size_t part = 0; part < parts_u * parts_v; ++part) {
-      const auto step_u = 1 / static_cast<double>(parts_u);
-      const auto step_v = 1 / static_cast<double>(parts_v);
-      const double from_u = static_cast<double>(part % parts_u) * step_u;
-      const double from_v = static_cast<double>(part / parts_u) * step_v;
-      SecondDerivatives own =
-          second_derivatives(part_of(patch, from_u, from_u + step_u, from_v, from_v + step_v));
-      const double u = step_u * width_u;
-      const double v = step_v * width_v;
-      most = {std::max(most.uu, own.uu / (u * u)), std::max(most.uv, own.uv / (u * v)),
-              std::max(most.vv, own.vv / (v * v))};
+  const std::size_t rows = surface.v_breaks.size() - 1;
+  parts_.resize(columns * rows * kParts * kParts);
+  const double step = 1 / static_cast<double>(kParts);
+  for (std::size_t k = 0; k < rows * kParts; ++k) {
+    for (std::size_t i = 0; i < columns * kParts; ++i) {
+      const std::size_t column = i / kParts;
+      const std::size_t row = k / kParts;
+      const double u = static_cast<double>(i % kParts) * step;
+      const double v = static_cast<double>(k % kParts) * step;
+      const SecondDerivatives own = second_derivatives(
+          part_of(surface.patches[row * columns + column], u, u + step, v, v + step));
+      const double width = step * (surface.u_breaks[column + 1] - surface.u_breaks[column]);
+      const double height = step * (surface.v_breaks[row + 1] - surface.v_breaks[row]);
+      parts_[k * columns * kParts + i] = {own.uu / (width * width), own.uv / (width * height),
+                                          own.vv / (height * height)};
     }
-    patches_.push_back(most);
   }
 }
 
 SecondDerivatives Bends::over(const Parameters& low, const Parameters& high) const {
-  // The pieces that a range meets, as (first, count) around a closed direction.
-  const auto pieces = [&](int direction) {
+  // The parts that a range meets, as (first, count) around a closed direction.
+  const auto parts = [&](int direction) {
     const auto axis = static_cast<std::size_t>(direction);
     const std::vector<double>& breaks = surface_.breaks(direction);
     const bool is_closed = surface_.is_closed[axis];
-    const std::size_t all = breaks.size() - 1;
+    const std::size_t all = (breaks.size() - 1) * kParts;
     if (is_closed && high[axis] - low[axis] >= surface_.period(direction)) {
       return std::pair<std::size_t, std::size_t>(0, all);
     }
-    const std::size_t first = piece_at(low[axis], breaks, is_closed).piece;
-    const std::size_t last = piece_at(high[axis], breaks, is_closed).piece;
-    if (is_closed && last < first) return std::pair(first, last + all - first + 1);
-    if (is_closed && last == first && high[axis] - low[axis] > breaks[first + 1] - breaks[first]) {
-      return std::pair<std::size_t, std::size_t>(0, all);
-    }
-    return std::pair(first, last - first + 1);
+    const auto part_at = [&](double at) {
+      const PieceAt place = piece_at(at, breaks, is_closed);
+      const double inside =
+          std::clamp(place.t * static_cast<double>(kParts), 0.0, static_cast<double>(kParts) - 0.5);
+      return place.piece * kParts + static_cast<std::size_t>(inside);
+    };
+    const std::size_t first = part_at(low[axis]);
+    const std::size_t last = part_at(high[axis]);
+    const bool goes_around =
+        is_closed && (last < first ||
+                      (last == first && high[axis] - low[axis] > surface_.period(direction) / 2));
+    return std::pair(first, goes_around ? last + all - first + 1 : last - first + 1);
   };
-  const auto [first_u, count_u] = pieces(0);
-  const auto [first_v, count_v] = pieces(1);
-  const std::size_t columns = surface_.u_breaks.size() - 1;
-  const std::size_t rows = surface_.v_breaks.size() - 1;
+  const auto [first_u, count_u] = parts(0);
+  const auto [first_v, count_v] = parts(1);
+  const std::size_t columns = (surface_.u_breaks.size() - 1) * kParts;
+  const std::size_t rows = (surface_.v_breaks.size() - 1) * kParts;
   SecondDerivatives most;
-  for (std::size_t k = 0; k < count_v; ++k) {
-    for (std::size_t i = 0; i < count_u; ++i) {
+  for (std::size_t k = 0; k < std::min(count_v, rows); ++k) {
+    for (std::size_t i = 0; i < std::min(count_u, columns); ++i) {
       const SecondDerivatives& own =
-          patches_[((first_v + k) % rows) * columns + (first_u + i) % columns];
+          parts_[((first_v + k) % rows) * columns + (first_u + i) % columns];
       most = {std::max(most.uu, own.uu), std::max(most.uv, own.uv), std::max(most.vv, own.vv)};
     }
   }

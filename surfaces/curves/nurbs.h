@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "surfaces/pieces.h"
+#include "surfaces/curves/pieces.h"
 
 namespace watertight::surfaces {
 

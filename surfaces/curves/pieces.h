@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "surfaces/bezier.h"
+#include "surfaces/curves/bezier.h"
 
 namespace watertight::surfaces {
 
@@ -62,8 +62,10 @@ class Bends {
   SecondDerivatives over(const Parameters& low, const Parameters& high) const;
 
  private:
+  static constexpr std::size_t kParts = 4;  // of a patch along u and v, each with its own bounds
+
   const Surface& surface_;
-  std::vector<SecondDerivatives> patches_;
+  std::vector<SecondDerivatives> parts_;  // as a table, along u first
 };
 
 /// S(u, v) becomes S(v, u), with the other side up.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surfaces/nurbs.h"
+#include "surfaces/curves/nurbs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "surfaces/pieces.h"
+#include "surfaces/curves/pieces.h"
 
 namespace watertight::surfaces {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surfaces/bezier.h"
+#include "surfaces/curves/bezier.h"
 
 #include <algorithm>
 #include <cmath>

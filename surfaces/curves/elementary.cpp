@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "surfaces/elementary.h"
+#include "surfaces/curves/elementary.h"
 
 #include <algorithm>
 #include <array>

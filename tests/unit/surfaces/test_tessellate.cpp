@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "surfaces/curves/elementary.h"
+#include "surfaces/tessellate_boundary.h"
+#include "validate/certify.h"
+
+namespace watertight {
+namespace {
+
+using surfaces::BoundaryRepresentation;
+using surfaces::Frame;
+using surfaces::Vector3;
+using surfaces::operator+;
+using surfaces::operator*;
+
+Solid solid_of(const surfaces::TessellatedBoundary& result) {
+  SolidArrays arrays = result.arrays;
+  std::array<std::int64_t, 3> low{};
+  for (const auto& position : result.positions) {
+    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], position[axis]);
+  }
+  Lattice lattice;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lattice.step[axis] = {1, result.lattice_exponent};
+    lattice.origin[axis] = {low[axis], low[axis] == 0 ? 0 : result.lattice_exponent};
+    while (lattice.origin[axis].mantissa != 0 && lattice.origin[axis].mantissa % 10 == 0) {
+      lattice.origin[axis] = {lattice.origin[axis].mantissa / 10,
+                              lattice.origin[axis].exponent + 1};
+    }
+  }
+  for (const auto& position : result.positions) {
+    arrays.vertices.push_back({static_cast<double>(position[0] - low[0]),
+                               static_cast<double>(position[1] - low[1]),
+                               static_cast<double>(position[2] - low[2])});
+  }
+  auto solid = Solid::make(std::move(arrays), lattice, 0);
+  REQUIRE(solid);
+  return *std::move(solid);
+}
+
+struct Wanted {
+  double volume = 0;
+  double area = 0;
+};
+
+/// Tessellates, and checks the verdict and the measures.
+surfaces::TessellatedBoundary check(const BoundaryRepresentation& solid, double chord,
+                                    const Wanted& wanted) {
+  surfaces::TessellateOptions options;
+  options.chord = chord;
+  auto result = surfaces::tessellate(solid, options);
+  REQUIRE(result);
+  for (const auto& face : result->left_out) {
+    CAPTURE(face.name, face.reason);
+    CHECK(face.reason.empty());
+  }
+  CHECK(result->measures.chord_error <= chord);
+  CertifyOptions certify_options;
+  certify_options.proof = Proof::boundary;
+  const auto report = certify(solid_of(*result), nullptr, certify_options).report;
+  for (const auto& finding : report.findings) {
+    CAPTURE(finding.code, finding.detail);
+    CHECK(finding.severity != Severity::error);
+  }
+  REQUIRE(report.measures);
+  CHECK(std::abs(report.measures->volume - wanted.volume) < wanted.area * chord);
+  CHECK(std::abs(report.measures->area - wanted.area) < 0.1 * wanted.area);
+  return *std::move(result);
+}
+
+/// Two circles around the axis z at heights `low` and `high`, with a face on each plane.
+BoundaryRepresentation between_circles(const Frame& frame, double low, double high,
+                                       double radius_low, double radius_high) {
+  BoundaryRepresentation solid;
+  for (const auto& [height, radius] : {std::pair(low, radius_low), std::pair(high, radius_high)}) {
+    Frame circle = frame;
+    circle.origin = frame.origin + frame.z * height;
+    solid.vertices.push_back(circle.origin + circle.x * radius);
+    const auto vertex = static_cast<Index>(solid.vertices.size() - 1);
+    solid.edges.push_back({vertex, vertex, surfaces::ellipse(circle, radius, radius), true});
+  }
+  solid.faces.push_back({"bottom", {}, true, {{{0, false}}}, 0, ""});
+  solid.faces.push_back({"top", {}, true, {{{1, true}}}, 0, ""});
+  solid.shells = {{0, 1, 2}};
+  return solid;
+}
+
+const Frame kTilted = surfaces::frame_of({100, 200, 30}, {1, 2, 2}, {0, 0, 1});
+constexpr double kPi = std::numbers::pi;
+
+}  // namespace
+
+TEST_CASE("a cylinder between two circles, without a seam, becomes a valid solid") {
+  for (const double chord : {0.1, 0.01, 0.001}) {
+    BoundaryRepresentation solid = between_circles(kTilted, 0, 3, 2, 2);
+    solid.faces.push_back(
+        {"side", surfaces::cylinder(kTilted, 2), true, {{{0, true}}, {{1, false}}}, 0, ""});
+    const auto result = check(solid, chord, {12 * kPi, 12 * kPi + 8 * kPi});
+    CHECK(result.measures.turned == 0);
+  }
+}
+
+TEST_CASE("a face whose sense is wrong is turned") {
+  BoundaryRepresentation solid = between_circles(kTilted, 0, 3, 2, 2);
+  solid.faces.push_back(
+      {"side", surfaces::cylinder(kTilted, 2), false, {{{0, true}}, {{1, false}}}, 0, ""});
+  check(solid, 0.01, {12 * kPi, 20 * kPi});
+  solid.faces[1].loops[0][0].is_forward = false;
+  CHECK(check(solid, 0.01, {12 * kPi, 20 * kPi}).measures.turned == 1);
+}
+
+TEST_CASE("a truncated cone and a whole one become valid solids") {
+  BoundaryRepresentation solid = between_circles(kTilted, 0, 1, 1, 2);
+  const auto cone = surfaces::cone(kTilted, 1, 1);
+  solid.faces.push_back({"side", cone, true, {{{0, true}}, {{1, false}}}, 0, ""});
+  check(solid, 0.01, {kPi * 7 / 3, kPi * (1 + 4 + 3 * std::sqrt(2.0))});
+  // The tip is at the pole of the surface, and no vertex of the file.
+  solid.faces = {solid.faces[1], {"side", cone, true, {{{1, false}}}, 0, ""}};
+  solid.shells = {{0, 1}};
+  check(solid, 0.01, {kPi * 8 / 3, kPi * (4 + 4 * std::sqrt(2.0))});
+}
+
+TEST_CASE("parts of spheres, with poles inside, become valid solids") {
+  BoundaryRepresentation solid = between_circles(kTilted, 0, 1, 2, std::sqrt(3.0));
+  const auto sphere = surfaces::sphere(kTilted, 2);
+  solid.faces.push_back({"zone", sphere, true, {{{0, true}}, {{1, false}}}, 0, ""});
+  check(solid, 0.01, {kPi * (4 - 1.0 / 3), kPi * (4 + 3 + 4)});
+  solid.faces = {solid.faces[0], {"dome", sphere, true, {{{0, true}}}, 0, ""}};
+  solid.shells = {{0, 1}};
+  check(solid, 0.01, {kPi * 16 / 3, kPi * (4 + 8)});
+  check(solid, 0.1, {kPi * 16 / 3, kPi * (4 + 8)});
+}
+
+TEST_CASE("an octant of a sphere, with a vertex at the pole, becomes a valid solid") {
+  BoundaryRepresentation solid;
+  const std::array<Vector3, 3> axes{kTilted.x, kTilted.y, kTilted.z};
+  solid.vertices = {kTilted.origin, kTilted.origin + axes[0] * 2.0, kTilted.origin + axes[1] * 2.0,
+                    kTilted.origin + axes[2] * 2.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Frame frame{kTilted.origin, axes[i], axes[(i + 1) % 3], axes[(i + 2) % 3]};
+    const auto start = static_cast<Index>(i + 1);
+    const auto end = static_cast<Index>((i + 1) % 3 + 1);
+    solid.edges.push_back({start, end, surfaces::ellipse(frame, 2, 2), true});
+  }
+  for (Index i = 1; i <= 3; ++i) solid.edges.push_back({0, i, {}, true});
+  solid.faces.push_back(
+      {"ball", surfaces::sphere(kTilted, 2), true, {{{0, true}, {1, true}, {2, true}}}, 0, ""});
+  for (Index i = 0; i < 3; ++i) {
+    const Index next = (i + 1) % 3;
+    solid.faces.push_back(
+        {"plane", {}, true, {{{3 + next, true}, {i, false}, {3 + i, false}}}, 0, ""});
+  }
+  solid.shells = {{0, 1, 2, 3}};
+  check(solid, 0.02, {kPi * 4 / 3, kPi * (2 + 3)});
+}
+
+TEST_CASE("half a torus becomes a valid solid") {
+  BoundaryRepresentation solid;
+  for (const double side : {1.0, -1.0}) {
+    const Frame ring{kTilted.origin + kTilted.x * (3 * side), kTilted.x * side, kTilted.z,
+                     kTilted.y * -side};
+    solid.vertices.push_back(ring.origin + ring.x * 1.0);
+    const auto vertex = static_cast<Index>(solid.vertices.size() - 1);
+    solid.edges.push_back({vertex, vertex, surfaces::ellipse(ring, 1, 1), true});
+  }
+  solid.faces.push_back({"start", {}, true, {{{0, true}}}, 0, ""});
+  solid.faces.push_back({"end", {}, true, {{{1, false}}}, 0, ""});
+  solid.faces.push_back(
+      {"tube", surfaces::torus(kTilted, 3, 1), true, {{{0, false}}, {{1, true}}}, 0, ""});
+  solid.shells = {{0, 1, 2}};
+  check(solid, 0.02, {kPi * kPi * 3, kPi * (6 * kPi + 2)});
+}
+
+TEST_CASE("faces that cannot be tessellated are named, and the others stay") {
+  BoundaryRepresentation solid = between_circles(kTilted, 0, 3, 2, 2);
+  solid.faces.push_back({"side", surfaces::cylinder(kTilted, 2), true, {{{0, true}}}, 0, ""});
+  const auto result = surfaces::tessellate(solid);
+  REQUIRE(result);
+  REQUIRE(result->left_out.size() == 1);
+  CHECK(result->left_out[0].name == "side");
+  CHECK(result->arrays.facet_offsets.size() == 3);
+  solid.faces[2].unreadable = "a surface of a kind that is not read";
+  CHECK(surfaces::tessellate(solid)->left_out[0].reason == solid.faces[2].unreadable);
+}
+
+TEST_CASE("limits and wrong numbers are errors") {
+  BoundaryRepresentation solid = between_circles(kTilted, 0, 3, 2, 2);
+  solid.faces.push_back(
+      {"side", surfaces::cylinder(kTilted, 2), true, {{{0, true}}, {{1, false}}}, 0, ""});
+  surfaces::TessellateOptions options;
+  for (const double chord : {0.0, -1.0, std::nan("")}) {
+    options.chord = chord;
+    CHECK(surfaces::tessellate(solid, options).error().code == ErrorCode::invalid_argument);
+  }
+  options.chord = 1e-6;
+  options.most_triangles = 100;
+  CHECK(surfaces::tessellate(solid, options).error().code == ErrorCode::limit_exceeded);
+  solid.faces[0].loops[0][0].edge = 7;
+  CHECK(surfaces::tessellate(solid).error().code == ErrorCode::malformed);
+}
+
+}  // namespace watertight

@@ -258,13 +258,16 @@ class LoopMaker {
     return count[0] > 0 ? !has_pole(true) && has_pole(false) : !has_pole(false) && has_pole(true);
   }
 
-  static void turn(Chain& chain) {
+  void turn(Chain& chain) const {
     // The way to the next point becomes the way from it. The first point stays the first.
     const FaceLoop old = chain.points;
     const std::size_t count = old.size();
     for (std::size_t i = 0; i < count; ++i) {
       chain.points[i] = old[(count - i) % count];
       chain.points[i].edge = old[count - 1 - i].edge;
+      for (std::size_t axis = 0; axis < 2 && i > 0; ++axis) {
+        chain.points[i].at[axis] -= period_[axis] * chain.winding[axis];
+      }
     }
     for (int& turns : chain.winding) turns = -turns;
   }

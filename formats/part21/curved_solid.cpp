@@ -40,13 +40,15 @@ Tessellation account_of(const surfaces::TessellatedBoundary& result, double chor
 
 Result<SubmittedSolid> curved_solid(surfaces::BoundaryRepresentation boundary,
                                     const surfaces::Affine& placement, SolidSource source,
-                                    std::uint32_t srid, double chord, const Limits& limits) {
+                                    std::uint32_t srid, double chord, std::uint64_t& budget,
+                                    const Limits& limits) {
   move_boundary(placement, boundary);
   surfaces::TessellateOptions options;
   options.chord = chord;
-  options.most_triangles = std::min(limits.facets, limits.vertices);
+  options.most_triangles = std::min({limits.facets, limits.vertices, budget});
   auto result = surfaces::tessellate(boundary, options);
   if (!result) return std::move(result).error();
+  budget -= std::min<std::uint64_t>(budget, result->arrays.facet_offsets.size() - 1);
   DecimalVertices vertices;
   vertices.is_rounded.assign(result->positions.size(), false);
   for (const auto& position : result->positions) {

@@ -43,7 +43,10 @@ Affine inverse_of(const Frame& frame) {
 class IfcReader {
  public:
   IfcReader(const Part21& file, std::size_t bytes, const ReadOptions& options)
-      : reader_(file), options_(options), most_items_(options.limits.solids_of(bytes)) {}
+      : reader_(file),
+        options_(options),
+        most_items_(options.limits.solids_of(bytes)),
+        budget_(options.limits.claimed_by(bytes)) {}
 
   Result<Document> read() {
     document_.format = Format::ifc;
@@ -301,7 +304,7 @@ class IfcReader {
     }
     boundary->solid.tolerance = precision_ * units_.metre;
     auto solid = curved_solid(std::move(boundary->solid), placement, source, srid_, options_.chord,
-                              options_.limits);
+                              budget_, options_.limits);
     if (!solid) {
       if (solid.error().code == ErrorCode::invalid_argument) return solid.error();
       feature.unreadable.push_back({std::move(source), std::move(solid).error()});
@@ -314,6 +317,7 @@ class IfcReader {
   EntityReader reader_;
   const ReadOptions& options_;
   std::uint64_t most_items_;
+  std::uint64_t budget_;     // curved_solid()
   std::uint64_t items_ = 0;  // of representations, counted each time they are used
   FileUnits units_;
   double precision_ = 1e-5;  // in units of length

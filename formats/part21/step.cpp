@@ -17,7 +17,8 @@ namespace {
 
 class StepReader {
  public:
-  StepReader(const Part21& file, const ReadOptions& options) : reader_(file), options_(options) {}
+  StepReader(const Part21& file, std::size_t bytes, const ReadOptions& options)
+      : reader_(file), options_(options), budget_(options.limits.claimed_by(bytes)) {}
 
   Result<Document> read() {
     document_.format = Format::step;
@@ -103,7 +104,7 @@ class StepReader {
     const double metre = units->metre;
     const surfaces::Affine placement{{{{metre, 0, 0}, {0, metre, 0}, {0, 0, metre}}}, {}};
     auto solid = curved_solid(std::move(boundary->solid), placement, source, 0, options_.chord,
-                              options_.limits);
+                              budget_, options_.limits);
     if (!solid) {
       if (solid.error().code == ErrorCode::invalid_argument) return solid.error();
       feature.unreadable.push_back({std::move(source), std::move(solid).error()});
@@ -115,6 +116,7 @@ class StepReader {
 
   EntityReader reader_;
   const ReadOptions& options_;
+  std::uint64_t budget_;                               // curved_solid()
   std::map<std::uint64_t, std::uint64_t> context_of_;  // item of a representation -> its context
   std::map<std::uint64_t, FileUnits> units_;           // context -> units
   Document document_;
@@ -125,7 +127,7 @@ class StepReader {
 Result<Document> read_step(std::string_view text, const ReadOptions& options) {
   const auto file = Part21::read(text, options.limits);
   if (!file) return file.error();
-  return StepReader(*file, options).read();
+  return StepReader(*file, text.size(), options).read();
 }
 
 }  // namespace watertight::formats

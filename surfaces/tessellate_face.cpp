@@ -56,6 +56,7 @@ class FaceMesh {
         static_cast<double>(most_)) {
       return too_many();
     }
+    if (has_pole()) use_short_rows();
     tessellate::TrimmedTriangles mesh;
     for (int round = 0; round < kMostRefinements; ++round) {
       mesh = triangulate();
@@ -148,7 +149,6 @@ class FaceMesh {
     }
     grid_.us = lines(size[0], step[0], scale_[0]);
     grid_.vs = lines(size[1], step[1], scale_[1]);
-    if (has_pole()) use_short_rows();
   }
 
   bool has_pole() const {
@@ -171,21 +171,35 @@ class FaceMesh {
     if (!(longest > 0)) return;
     const double size = (high_[0] - low_[0]) * scale_[0];
     for (const double y : grid.vs) {
+      const std::vector<std::size_t> edges = edges_near_row(y);
       const double share = length_at(y) / longest;
       const double count = std::ceil(static_cast<double>(grid.us.size() + 1) * share);
       for (double i = 1; i < count; ++i) {
         const Point p{size * (i / count), y, 0};
-        if (is_inside(p) && !is_beside_border(p)) inner_.push_back(p);
+        if (is_inside(p, edges) && !is_beside_border(p, edges)) inner_.push_back(p);
       }
     }
   }
 
-  /// Whether a point of the plane is strictly inside the loops, exactly.
-  bool is_inside(const Point& p) const {
+  /// The edges of the region that points of a row may be beside.
+  std::vector<std::size_t> edges_near_row(double y) const {
+    std::vector<std::size_t> edges;
+    for (std::size_t i = 0; i < region_.edges.size(); ++i) {
+      const double reach = clearance_.of_edges[i];
+      const double a = region_.points[region_.edges[i][0]].y;
+      const double b = region_.points[region_.edges[i][1]].y;
+      if (std::min(a, b) - reach <= y && y <= std::max(a, b) + reach) edges.push_back(i);
+    }
+    return edges;
+  }
+
+  /// Whether a point of the plane is strictly inside the loops, exactly. `edges` has those of the
+  /// edges of the region that the row of the point meets.
+  bool is_inside(const Point& p, std::span<const std::size_t> edges) const {
     bool is_odd = false;
-    for (const tessellate::PlaneEdge& edge : region_.edges) {
-      const Point* a = &region_.points[edge[0]];
-      const Point* b = &region_.points[edge[1]];
+    for (const std::size_t edge : edges) {
+      const Point* a = &region_.points[region_.edges[edge][0]];
+      const Point* b = &region_.points[region_.edges[edge][1]];
       if ((a->y <= p.y) == (b->y <= p.y)) continue;
       if (a->y > b->y) std::swap(a, b);
       const int side = tessellate::turn(*a, *b, p);
@@ -285,8 +299,8 @@ class FaceMesh {
 
   /// Whether a point is so near to a chord around the face that the surface may pass the chord
   /// there: a triangle between them might stand outside the face.
-  bool is_beside_border(const Point& p) const {
-    for (std::size_t i = 0; i < region_.edges.size(); ++i) {
+  bool is_beside_border(const Point& p, std::span<const std::size_t> edges) const {
+    for (const std::size_t i : edges) {
       const double reach = clearance_.of_edges[i];
       const Point& a = region_.points[region_.edges[i][0]];
       const Point& b = region_.points[region_.edges[i][1]];
@@ -320,6 +334,8 @@ class FaceMesh {
       if (!is_beside_border(middle)) inner_.push_back(middle);
     }
   }
+
+  bool is_beside_border(const Point& p) const { return is_beside_border(p, edges_near_row(p.y)); }
 
   bool is_border(Index a, Index b) const {
     const auto border = static_cast<Index>(region_.points.size());

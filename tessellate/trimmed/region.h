@@ -5,7 +5,7 @@
 //
 // Based on: A. Fournier, D. Y. Montuno, Triangulating simple polygons and equivalent problems,
 // 1984 (trapezoids, and the pieces between their diagonals), as used by S. Kumar, D. Manocha and
-// others for trimmed surfaces. Departures: docs/decisions/0049-trimmed-regions.md.
+// others for trimmed surfaces. Departures: docs/decisions/0049-curved-solids.md.
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "surfaces/curves/elementary.h"
@@ -14,6 +15,7 @@ using surfaces::BoundaryRepresentation;
 using surfaces::Frame;
 using surfaces::Vector3;
 using surfaces::operator+;
+using surfaces::operator-;
 using surfaces::operator*;
 
 Solid solid_of(const surfaces::TessellatedBoundary& result) {
@@ -46,9 +48,37 @@ struct Wanted {
   double area = 0;
 };
 
-/// Tessellates, and checks the verdict and the measures.
+using Distance = std::function<double(const Vector3&)>;  // from the curved surface
+
+/// The largest distance of 100 points of each triangle from the surface.
+double farthest(const surfaces::TessellatedBoundary& result, const Distance& distance) {
+  const SolidArrays& arrays = result.arrays;
+  const double step = std::pow(10.0, result.lattice_exponent);
+  double most = 0;
+  for (std::size_t ring = 0; ring + 1 < arrays.ring_offsets.size(); ++ring) {
+    const Index first = arrays.ring_offsets[ring];
+    if (arrays.ring_offsets[ring + 1] - first != 3) continue;  // a plane
+    std::array<Vector3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        corners[k][axis] =
+            step * static_cast<double>(result.positions[arrays.ring_vertices[first + k]][axis]);
+      }
+    }
+    for (int i = 0; i < 13; ++i) {
+      for (int j = 0; i + j < 13; ++j) {
+        const double a = i / 12.0;
+        const double b = j / 12.0;
+        most = std::max(most, distance(corners[0] * a + corners[1] * b + corners[2] * (1 - a - b)));
+      }
+    }
+  }
+  return most;
+}
+
+/// Tessellates, and checks the verdict, the measures and the distance of the curved faces.
 surfaces::TessellatedBoundary check(const BoundaryRepresentation& solid, double chord,
-                                    const Wanted& wanted) {
+                                    const Wanted& wanted, const Distance& distance = {}) {
   surfaces::TessellateOptions options;
   options.chord = chord;
   auto result = surfaces::tessellate(solid, options);
@@ -58,6 +88,7 @@ surfaces::TessellatedBoundary check(const BoundaryRepresentation& solid, double 
     CHECK(face.reason.empty());
   }
   CHECK(result->measures.chord_error <= chord);
+  if (distance) CHECK(farthest(*result, distance) <= chord);
   CertifyOptions certify_options;
   certify_options.proof = Proof::boundary;
   const auto report = certify(solid_of(*result), nullptr, certify_options).report;
@@ -88,8 +119,30 @@ BoundaryRepresentation between_circles(const Frame& frame, double low, double hi
   return solid;
 }
 
+/// Height and radius of a place about the axis of a frame.
+std::pair<double, double> about_axis(const Frame& frame, const Vector3& place) {
+  const Vector3 offset = place - frame.origin;
+  const double height = surfaces::dot(offset, frame.z);
+  return {height, surfaces::length(offset - frame.z * height)};
+}
+
 const Frame kTilted = surfaces::frame_of({100, 200, 30}, {1, 2, 2}, {0, 0, 1});
 constexpr double kPi = std::numbers::pi;
+
+double from_cylinder(const Vector3& place) {
+  return std::abs(about_axis(kTilted, place).second - 2);
+}
+double from_cone(const Vector3& place) {
+  const auto [height, radius] = about_axis(kTilted, place);
+  return std::abs(radius - 1 - height) / std::sqrt(2.0);
+}
+double from_sphere(const Vector3& place) {
+  return std::abs(surfaces::length(place - kTilted.origin) - 2);
+}
+double from_torus(const Vector3& place) {
+  const auto [height, radius] = about_axis(kTilted, place);
+  return std::abs(std::hypot(radius - 3, height) - 1);
+}
 
 }  // namespace
 
@@ -98,7 +151,7 @@ TEST_CASE("a cylinder between two circles, without a seam, becomes a valid solid
     BoundaryRepresentation solid = between_circles(kTilted, 0, 3, 2, 2);
     solid.faces.push_back(
         {"side", surfaces::cylinder(kTilted, 2), true, {{{0, true}}, {{1, false}}}, 0, ""});
-    const auto result = check(solid, chord, {12 * kPi, 12 * kPi + 8 * kPi});
+    const auto result = check(solid, chord, {12 * kPi, 12 * kPi + 8 * kPi}, from_cylinder);
     CHECK(result.measures.turned == 0);
   }
 }
@@ -116,22 +169,22 @@ TEST_CASE("a truncated cone and a whole one become valid solids") {
   BoundaryRepresentation solid = between_circles(kTilted, 0, 1, 1, 2);
   const auto cone = surfaces::cone(kTilted, 1, 1);
   solid.faces.push_back({"side", cone, true, {{{0, true}}, {{1, false}}}, 0, ""});
-  check(solid, 0.01, {kPi * 7 / 3, kPi * (1 + 4 + 3 * std::sqrt(2.0))});
+  check(solid, 0.01, {kPi * 7 / 3, kPi * (1 + 4 + 3 * std::sqrt(2.0))}, from_cone);
   // The tip is at the pole of the surface, and no vertex of the file.
   solid.faces = {solid.faces[1], {"side", cone, true, {{{1, false}}}, 0, ""}};
   solid.shells = {{0, 1}};
-  check(solid, 0.01, {kPi * 8 / 3, kPi * (4 + 4 * std::sqrt(2.0))});
+  check(solid, 0.01, {kPi * 8 / 3, kPi * (4 + 4 * std::sqrt(2.0))}, from_cone);
 }
 
 TEST_CASE("parts of spheres, with poles inside, become valid solids") {
   BoundaryRepresentation solid = between_circles(kTilted, 0, 1, 2, std::sqrt(3.0));
   const auto sphere = surfaces::sphere(kTilted, 2);
   solid.faces.push_back({"zone", sphere, true, {{{0, true}}, {{1, false}}}, 0, ""});
-  check(solid, 0.01, {kPi * (4 - 1.0 / 3), kPi * (4 + 3 + 4)});
+  check(solid, 0.01, {kPi * (4 - 1.0 / 3), kPi * (4 + 3 + 4)}, from_sphere);
   solid.faces = {solid.faces[0], {"dome", sphere, true, {{{0, true}}}, 0, ""}};
   solid.shells = {{0, 1}};
-  check(solid, 0.01, {kPi * 16 / 3, kPi * (4 + 8)});
-  check(solid, 0.1, {kPi * 16 / 3, kPi * (4 + 8)});
+  check(solid, 0.01, {kPi * 16 / 3, kPi * (4 + 8)}, from_sphere);
+  check(solid, 0.1, {kPi * 16 / 3, kPi * (4 + 8)}, from_sphere);
 }
 
 TEST_CASE("an octant of a sphere, with a vertex at the pole, becomes a valid solid") {
@@ -154,7 +207,7 @@ TEST_CASE("an octant of a sphere, with a vertex at the pole, becomes a valid sol
         {"plane", {}, true, {{{3 + next, true}, {i, false}, {3 + i, false}}}, 0, ""});
   }
   solid.shells = {{0, 1, 2, 3}};
-  check(solid, 0.02, {kPi * 4 / 3, kPi * (2 + 3)});
+  check(solid, 0.02, {kPi * 4 / 3, kPi * (2 + 3)}, from_sphere);
 }
 
 TEST_CASE("half a torus becomes a valid solid") {
@@ -171,7 +224,7 @@ TEST_CASE("half a torus becomes a valid solid") {
   solid.faces.push_back(
       {"tube", surfaces::torus(kTilted, 3, 1), true, {{{0, false}}, {{1, true}}}, 0, ""});
   solid.shells = {{0, 1, 2}};
-  check(solid, 0.02, {kPi * kPi * 3, kPi * (6 * kPi + 2)});
+  check(solid, 0.02, {kPi * kPi * 3, kPi * (6 * kPi + 2)}, from_torus);
 }
 
 TEST_CASE("faces that cannot be tessellated are named, and the others stay") {

@@ -68,12 +68,12 @@ inline constexpr std::string_view kReportParameters[] = {
     "proof", "strict", "filter",   "filter-lang", "filter-crs",      "bbox",    "bbox-crs"};
 inline constexpr std::string_view kSubmitParameters[] = {
     "f",       "invalid",        "surfaces", "planarity", "planarity-angle",
-    "overlap", "exact-overlaps", "proof",    "strict"};
+    "overlap", "exact-overlaps", "proof",    "strict",    "chord"};
 
 /// The parameters of a document that is stored.
 inline constexpr std::string_view kStoreParameters[] = {
     "f",     "invalid", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps",
-    "proof", "strict",  "repair",   "weld",      "islands"};
+    "proof", "strict",  "repair",   "weld",      "islands",         "chord"};
 
 /// The parameters of a document that is repaired.
 inline constexpr std::string_view kRepairParameters[] = {

@@ -83,7 +83,7 @@ constexpr auto kNames = std::to_array<FormatName>({
 
 bool is_allowed(Format format, AcceptedFormats accepted) {
   constexpr std::array kWithIds = {Format::city_json, Format::city_json_seq, Format::gml,
-                                   Format::json_fg};
+                                   Format::json_fg,   Format::ifc,           Format::step};
   return accepted == AcceptedFormats::all ||
          std::find(kWithIds.begin(), kWithIds.end(), format) != kWithIds.end();
 }

@@ -100,6 +100,8 @@ def main():
     # The sample has a facet that is not planar and that the proof fills otherwise than the exact
     # tests.
     samples.append(root / "tests/golden/solids/slab-depends-on-diagonal.city.json")
+    # A curved solid with a face that is left out.
+    samples.append(root / "tests/golden/curved/lost-side.step")
     # Findings between elements of the document, and in polygons with ids.
     samples += [root / "tests/data/gml" / name
                 for name in ("defects.gml", "ogc_Building_LOD3-EPSG25832.gml")]

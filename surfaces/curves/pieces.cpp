@@ -12,7 +12,6 @@ namespace {
 constexpr int kMostNearerSteps = 60;  // of an iteration for a nearest point
 constexpr std::size_t kStarts = 8;    // per piece, from which the nearest point is looked for
 constexpr double kSamePlace = 1e-9;   // of the size of a patch: control points at one place
-constexpr std::size_t kParts = 4;     // of a rational patch along u and v, for its bounds
 
 struct PieceAt {
   std::size_t piece = 0;

@@ -14,6 +14,7 @@ namespace watertight::surfaces {
 namespace {
 
 constexpr std::string_view kWindsAroundV = "a loop winds around the second direction";
+constexpr double kFarOff = 100;     // times the tolerance or chord: an edge is elsewhere
 constexpr double kSameTurn = 1e-9;  // of a period: both sides of a pole are one meridian
 constexpr std::size_t kMostSeamPoints = 100'000;
 constexpr std::size_t kSeamTries = 256;  // places at which a seam is tried
@@ -75,6 +76,7 @@ class LoopMaker {
         surface_(surface),
         is_reversed_(face.is_along_surface == is_transposed),
         edges_(edges),
+        tolerance_(tolerance),
         chord_(chord),
         inverter_(surface, tolerance),
         pool_(pool),
@@ -178,8 +180,11 @@ class LoopMaker {
     std::vector<Entry> entries = entries_of(loop);
     std::optional<Parameters> neighbour;
     for (Entry& entry : entries) {
-      entry.inverted = inverter_.invert(pool_.place(entry.vertex), neighbour);
+      entry.inverted = inverter_.invert(pool_.place(entry.vertex), neighbour, result_.gap);
       result_.gap = std::max(result_.gap, entry.inverted.gap);
+      if (result_.gap > kFarOff * std::max(tolerance_, chord_)) {
+        return no_loops("an edge is " + std::to_string(result_.gap) + " m off the surface");
+      }
       if (!entry.inverted.pole) neighbour = entry.inverted.at;
     }
     const auto first = std::find_if(entries.begin(), entries.end(),
@@ -468,6 +473,7 @@ class LoopMaker {
   const Surface& surface_;
   bool is_reversed_;  // the loops have the face on their right in the plane of (u, v)
   const std::vector<EdgeSamples>& edges_;
+  double tolerance_;
   double chord_;
   Inverter inverter_;
   VertexPool& pool_;

@@ -13,6 +13,7 @@ constexpr std::size_t kManyPatches = 64;  // above them the net has a quarter of
 constexpr std::size_t kTries = 6;         // points of the net from which the search starts
 constexpr int kMostApproachSteps = 50;
 constexpr int kMostApproachHalvings = 20;
+constexpr double kAsFar = 2;          // times the gap of other points: not worth another search
 constexpr double kSmallStep = 1e-14;  // of the coordinates: no progress
 
 }  // namespace
@@ -89,7 +90,8 @@ Inverted Inverter::approach(const Vector3& place, Parameters from) const {
   return {at, std::sqrt(distance), {}};
 }
 
-Inverted Inverter::invert(const Vector3& place, const std::optional<Parameters>& neighbour) const {
+Inverted Inverter::invert(const Vector3& place, const std::optional<Parameters>& neighbour,
+                          double known_gap) const {
   for (std::size_t i = 0; i < poles_.size(); ++i) {
     const double distance = length(place - poles_[i].place);
     if (distance > tolerance_) continue;
@@ -99,7 +101,7 @@ Inverted Inverter::invert(const Vector3& place, const std::optional<Parameters>&
   }
   if (neighbour) {
     const Inverted near = approach(place, *neighbour);
-    if (near.gap <= tolerance_) return near;
+    if (near.gap <= std::max(tolerance_, kAsFar * known_gap)) return near;
   }
   struct Start {
     double distance = 0;

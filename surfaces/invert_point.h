@@ -22,7 +22,9 @@ struct Inverted {
 class Inverter {
  public:
   Inverter(const Surface& surface, double tolerance);
-  Inverted invert(const Vector3& place, const std::optional<Parameters>& neighbour) const;
+  /// `known_gap` is a distance from the surface that other points of the same loops have.
+  Inverted invert(const Vector3& place, const std::optional<Parameters>& neighbour,
+                  double known_gap = 0) const;
   const std::vector<Pole>& poles() const { return poles_; }
 
  private:

@@ -235,6 +235,11 @@ TEST_CASE("faces that cannot be tessellated are named, and the others stay") {
   REQUIRE(result->left_out.size() == 1);
   CHECK(result->left_out[0].name == "side");
   CHECK(result->arrays.facet_offsets.size() == 3);
+  solid.faces[2] = {"side", surfaces::cylinder(kTilted, 9), true, {{{0, true}}, {{1, false}}}, 0,
+                    ""};
+  REQUIRE(surfaces::tessellate(solid)->left_out.size() == 1);
+  CHECK(surfaces::tessellate(solid)->left_out[0].reason.find("off the surface") !=
+        std::string::npos);
   solid.faces[2].unreadable = "a surface of a kind that is not read";
   CHECK(surfaces::tessellate(solid)->left_out[0].reason == solid.faces[2].unreadable);
 }

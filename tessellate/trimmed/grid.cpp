@@ -246,6 +246,40 @@ GridRegion region_with_grid(Region loops, const PlaneGrid& grid, const Clearance
   return Gridding(std::move(loops), grid, clearance).run();
 }
 
+namespace {
+
+/// How many coordinates differ, apart from rounding.
+std::size_t distinct_count(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const double least = kMargin * (values.back() - values.front());
+  std::size_t count = 1;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] - values[i - 1] > least) ++count;
+  }
+  return count;
+}
+
+/// Sweeps along the direction in which more coordinates differ: between two rows of points the
+/// triangles then alternate from the start, and few edges have to be flipped.
+RegionTriangles sweep_along_longer(Region region) {
+  std::vector<double> us;
+  std::vector<double> vs;
+  for (const Point& p : region.points) {
+    us.push_back(p.x);
+    vs.push_back(p.y);
+  }
+  if (distinct_count(std::move(us)) <= distinct_count(std::move(vs))) return sweep_region(region);
+  // The mirror image: u and v exchanged, and each edge in the other direction.
+  for (Point& p : region.points) std::swap(p.x, p.y);
+  for (PlaneEdge& edge : region.edges) std::swap(edge[0], edge[1]);
+  RegionTriangles result = sweep_region(region);
+  for (Triangle& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
+  return result;
+}
+
+}  // namespace
+
 TrimmedTriangles triangulate_trimmed(Region loops, const PlaneGrid& grid,
                                      const Clearance& clearance) {
   GridRegion gridded = region_with_grid(std::move(loops), grid, clearance);
@@ -268,7 +302,7 @@ TrimmedTriangles triangulate_trimmed(Region loops, const PlaneGrid& grid,
   for (const auto& [from, to] : gridded.region.edges) {
     rest.edges.push_back({number[from], number[to]});
   }
-  RegionTriangles triangles = sweep_region(rest);
+  RegionTriangles triangles = sweep_along_longer(std::move(rest));
   result.points = std::move(gridded.region.points);
   if (triangles.conflict) {
     for (PlaneEdge* edge : {&triangles.conflict->first, &triangles.conflict->second}) {

@@ -4,6 +4,7 @@
 // faces on surfaces, between loops of edges.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,6 +27,12 @@ struct OrientedEdge {
   bool is_forward = true;
 };
 using EdgeLoop = std::vector<OrientedEdge>;
+
+/// Makes a loop run the other way.
+inline void turn(EdgeLoop& loop) {
+  std::reverse(loop.begin(), loop.end());
+  for (OrientedEdge& edge : loop) edge.is_forward = !edge.is_forward;
+}
 
 struct BoundaryFace {
   std::string name;                // for people: "#104"

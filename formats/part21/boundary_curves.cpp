@@ -146,11 +146,10 @@ Result<std::optional<Vector3>> trim_place(const EntityReader& reader, const Plai
   return std::optional<Vector3>();
 }
 
-Result<Curve> trimmed(const EntityReader& reader, const PlainEntity& from, double radians,
-                      std::uint32_t depth) {
+Result<Curve> trimmed(const EntityReader& reader, const PlainEntity& from, std::uint32_t depth) {
   const auto basis_id = reader.reference(from, 0);
   if (!basis_id) return basis_id.error();
-  auto basis = read_curve(reader, *basis_id, radians, depth + 1);
+  auto basis = read_curve(reader, *basis_id, depth + 1);
   if (!basis) return basis;
   const auto first = trim_place(reader, from, 1);
   if (!first) return first.error();
@@ -173,8 +172,7 @@ Result<Curve> trimmed(const EntityReader& reader, const PlainEntity& from, doubl
   return part;
 }
 
-Result<Curve> composite(const EntityReader& reader, const PlainEntity& from, double radians,
-                        std::uint32_t depth) {
+Result<Curve> composite(const EntityReader& reader, const PlainEntity& from, std::uint32_t depth) {
   const auto segments = reader.references(from, 0);
   if (!segments) return segments.error();
   Curve whole;
@@ -184,7 +182,7 @@ Result<Curve> composite(const EntityReader& reader, const PlainEntity& from, dou
     if (!segment) return segment.error();
     const auto parent = reader.reference(*segment, 2);
     if (!parent) return parent.error();
-    auto part = read_curve(reader, *parent, radians, depth + 1);
+    auto part = read_curve(reader, *parent, depth + 1);
     if (!part) return part;
     const bool agrees = segment->values[1].is_true();
     Curve curve = agrees ? *std::move(part) : surfaces::reversed(*part);
@@ -199,8 +197,7 @@ Result<Curve> composite(const EntityReader& reader, const PlainEntity& from, dou
 
 }  // namespace
 
-Result<Curve> read_curve(const EntityReader& reader, std::uint64_t id, double radians,
-                         std::uint32_t depth) {
+Result<Curve> read_curve(const EntityReader& reader, std::uint64_t id, std::uint32_t depth) {
   if (depth > kDeepestCurve) {
     return Error{ErrorCode::limit_exceeded,
                  "curves within curves deeper than " + std::to_string(kDeepestCurve),
@@ -224,13 +221,13 @@ Result<Curve> read_curve(const EntityReader& reader, std::uint64_t id, double ra
     if (points->size() < 2) return reader.error(*found, "a polyline of fewer than two points");
     return surfaces::polyline(*points);
   }
-  if (type == "TRIMMEDCURVE") return trimmed(reader, *found, radians, depth);
-  if (type == "COMPOSITECURVE") return composite(reader, *found, radians, depth);
+  if (type == "TRIMMEDCURVE") return trimmed(reader, *found, depth);
+  if (type == "COMPOSITECURVE") return composite(reader, *found, depth);
   // Curves that lie on surfaces: the curve in space says where.
   if (type == "SURFACECURVE" || type == "SEAMCURVE" || type == "INTERSECTIONCURVE") {
     const auto inner = reader.reference(*found, 0);
     if (!inner) return inner.error();
-    return read_curve(reader, *inner, radians, depth + 1);
+    return read_curve(reader, *inner, depth + 1);
   }
   return unsupported(*found, "curves");
 }
@@ -261,20 +258,20 @@ Result<Surface> cone_surface(const EntityReader& reader, const PlainEntity& from
 }
 
 /// The curve of a profile, or of a surface that has none.
-Result<Curve> swept_curve(const EntityReader& reader, const PlainEntity& from, double radians) {
+Result<Curve> swept_curve(const EntityReader& reader, const PlainEntity& from) {
   const auto swept = reader.entity(from, 0);
   if (!swept) return swept.error();
   const bool is_profile =
       swept->type == "ARBITRARYCLOSEDPROFILEDEF" || swept->type == "ARBITRARYOPENPROFILEDEF";
-  if (!is_profile) return read_curve(reader, swept->id, radians);
+  if (!is_profile) return read_curve(reader, swept->id);
   const auto curve = reader.reference(*swept, 2);
   if (!curve) return curve.error();
-  return read_curve(reader, *curve, radians);
+  return read_curve(reader, *curve);
 }
 
 /// IFC: profile, position or none, axis. STEP: curve, axis.
-Result<Surface> revolution(const EntityReader& reader, const PlainEntity& from, double radians) {
-  auto curve = swept_curve(reader, from, radians);
+Result<Surface> revolution(const EntityReader& reader, const PlainEntity& from) {
+  auto curve = swept_curve(reader, from);
   if (!curve) return curve.error();
   const bool has_position = from.values.size() > 2;
   const auto axis = frame_at(reader, from, has_position ? 2 : 1);
@@ -291,8 +288,8 @@ Result<Surface> revolution(const EntityReader& reader, const PlainEntity& from, 
 }
 
 /// IFC: profile, position or none, direction, depth. STEP: curve, vector.
-Result<Surface> extrusion(const EntityReader& reader, const PlainEntity& from, double radians) {
-  auto curve = swept_curve(reader, from, radians);
+Result<Surface> extrusion(const EntityReader& reader, const PlainEntity& from) {
+  auto curve = swept_curve(reader, from);
   if (!curve) return curve.error();
   const bool is_ifc = from.values.size() > 2;
   auto direction_id = reader.reference(from, is_ifc ? 2 : 1);
@@ -381,8 +378,8 @@ Result<std::optional<Surface>> read_surface(const EntityReader& reader, std::uin
   if (type.ends_with("BSPLINESURFACEWITHKNOTS") || type == "RATIONALBSPLINESURFACE") {
     return optional_of(spline_surface(reader, *found));
   }
-  if (type == "SURFACEOFREVOLUTION") return optional_of(revolution(reader, *found, radians));
-  if (type == "SURFACEOFLINEAREXTRUSION") return optional_of(extrusion(reader, *found, radians));
+  if (type == "SURFACEOFREVOLUTION") return optional_of(revolution(reader, *found));
+  if (type == "SURFACEOFLINEAREXTRUSION") return optional_of(extrusion(reader, *found));
   const bool is_torus = type == "TOROIDALSURFACE" || type == "DEGENERATETOROIDALSURFACE";
   if (!is_torus && type != "CYLINDRICALSURFACE" && type != "CONICALSURFACE" &&
       type != "SPHERICALSURFACE") {

@@ -12,7 +12,7 @@ namespace watertight::formats {
 
 /// A curve of any kind that files have. Errors: malformed; unsupported for another kind of entity,
 /// limit_exceeded for curves within curves without end.
-Result<surfaces::Curve> read_curve(const EntityReader& reader, std::uint64_t id, double radians,
+Result<surfaces::Curve> read_curve(const EntityReader& reader, std::uint64_t id,
                                    std::uint32_t depth = 0);
 
 /// A surface; nothing for a plane. Errors: as read_curve().

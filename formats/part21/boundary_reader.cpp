@@ -154,11 +154,6 @@ class BoundaryReader {
     return true;
   }
 
-  static void turn(EdgeLoop& loop) {
-    std::reverse(loop.begin(), loop.end());
-    for (OrientedEdge& edge : loop) edge.is_forward = !edge.is_forward;
-  }
-
   Status bound(std::uint64_t id, BoundaryFace& face) {
     const auto found = reader_.entity(id);
     if (!found) return found.error();
@@ -228,7 +223,7 @@ class BoundaryReader {
     }
     const auto curve_id = reader_.reference(*found, 2);
     if (!curve_id) return curve_id.error();
-    auto curve = read_curve(reader_, *curve_id, radians_);
+    auto curve = read_curve(reader_, *curve_id);
     if (!curve) return curve.error();
     edge.curve = *std::move(curve);
     edge.is_along_curve = found->values.size() > 3 && found->values[3].is_true();

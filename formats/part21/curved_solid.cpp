@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "formats/part21/boundary_reader.h"
+#include "formats/surface.h"
 #include "surfaces/tessellate_boundary.h"
 
 namespace watertight::formats {
@@ -18,10 +20,7 @@ void move_boundary(const surfaces::Affine& placement, surfaces::BoundaryRepresen
     if (face.surface) move(placement, *face.surface);
     if (!is_mirrored) continue;
     face.is_along_surface = !face.is_along_surface;
-    for (surfaces::EdgeLoop& loop : face.loops) {
-      std::reverse(loop.begin(), loop.end());
-      for (surfaces::OrientedEdge& edge : loop) edge.is_forward = !edge.is_forward;
-    }
+    for (surfaces::EdgeLoop& loop : face.loops) surfaces::turn(loop);
   }
 }
 
@@ -35,8 +34,6 @@ Tessellation account_of(const surfaces::TessellatedBoundary& result, double chor
   }
   return account;
 }
-
-}  // namespace
 
 Result<SubmittedSolid> curved_solid(surfaces::BoundaryRepresentation boundary,
                                     const surfaces::Affine& placement, SolidSource source,
@@ -70,6 +67,29 @@ Result<SubmittedSolid> curved_solid(surfaces::BoundaryRepresentation boundary,
   if (!placed) return std::move(placed).error();
   solid->solid = *std::move(placed);
   return solid;
+}
+
+}  // namespace
+
+Status add_curved_solid(const Part21& file, CurvedSource from, const ReadOptions& options,
+                        std::uint64_t& budget, Document& document, Feature& feature) {
+  auto boundary = read_boundary(file, from.id, from.radian, options.limits);
+  if (!boundary) {
+    if (boundary.error().code == ErrorCode::limit_exceeded) return boundary.error();
+    feature.unreadable.push_back({std::move(from.source), std::move(boundary).error()});
+    return Done{};
+  }
+  document.notes.insert(document.notes.end(), boundary->notes.begin(), boundary->notes.end());
+  if (from.tolerance) boundary->solid.tolerance = *from.tolerance;
+  auto solid = curved_solid(std::move(boundary->solid), from.placement, from.source, from.srid,
+                            options.chord, budget, options.limits);
+  if (!solid) {
+    if (solid.error().code == ErrorCode::invalid_argument) return solid.error();
+    feature.unreadable.push_back({std::move(from.source), std::move(solid).error()});
+    return Done{};
+  }
+  feature.solids.push_back(*std::move(solid));
+  return Done{};
 }
 
 }  // namespace watertight::formats

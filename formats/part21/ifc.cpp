@@ -296,28 +296,16 @@ class IfcReader {
           {},
           {}};
     }
-    auto boundary = read_boundary(reader_.file(), id, units_.radian, options_.limits);
-    if (!boundary && boundary.error().code == ErrorCode::limit_exceeded) return boundary.error();
-    if (!boundary) {
-      feature.unreadable.push_back({std::move(source), std::move(boundary).error()});
-      return Done{};
-    }
-    boundary->solid.tolerance = precision_ * units_.metre;
-    auto solid = curved_solid(std::move(boundary->solid), placement, source, srid_, options_.chord,
-                              budget_, options_.limits);
-    if (!solid) {
-      if (solid.error().code == ErrorCode::invalid_argument) return solid.error();
-      feature.unreadable.push_back({std::move(source), std::move(solid).error()});
-      return Done{};
-    }
-    feature.solids.push_back(*std::move(solid));
-    return Done{};
+    return add_curved_solid(
+        reader_.file(),
+        {id, units_.radian, precision_ * units_.metre, placement, srid_, std::move(source)},
+        options_, budget_, document_, feature);
   }
 
   EntityReader reader_;
   const ReadOptions& options_;
   std::uint64_t most_items_;
-  std::uint64_t budget_;     // curved_solid()
+  std::uint64_t budget_;     // add_curved_solid()
   std::uint64_t items_ = 0;  // of representations, counted each time they are used
   FileUnits units_;
   double precision_ = 1e-5;  // in units of length

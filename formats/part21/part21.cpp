@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/ascii.h"
+#include "formats/text/json_events.h"
 
 namespace watertight::formats {
 namespace {
@@ -249,25 +249,8 @@ int hex_digit_value(char c) {
 }
 
 void append_character(std::uint32_t code, std::string& out) {
-  if (code == 0 || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) code = 0xFFFD;
-  const auto tail = [&](unsigned shift) {
-    out += static_cast<char>(0x80U | ((code >> shift) & 0x3FU));
-  };
-  if (code < 0x80) {
-    out += static_cast<char>(code);
-  } else if (code < 0x800) {
-    out += static_cast<char>(0xC0U | (code >> 6U));
-    tail(0);
-  } else if (code < 0x10000) {
-    out += static_cast<char>(0xE0U | (code >> 12U));
-    tail(6);
-    tail(0);
-  } else {
-    out += static_cast<char>(0xF0U | (code >> 18U));
-    tail(12);
-    tail(6);
-    tail(0);
-  }
+  const bool is_character = code != 0 && code <= 0x10FFFF && (code < 0xD800 || code >= 0xE000);
+  append_utf8(out, is_character ? code : 0xFFFD);
 }
 
 /// The number of `digits` hexadecimal digits at a place, or nothing.

@@ -91,32 +91,19 @@ class StepReader {
     const auto units = units_of(place.id);
     if (!units) return units.error();
     const std::string id = instance_name(place.id);
-    SolidSource source{id, std::string(place.type), "", 0, 0, ""};
     Feature& feature = document_.features.emplace_back();
     feature.id = id;
-    auto boundary = read_boundary(reader_.file(), place.id, units->radian, options_.limits);
-    if (!boundary && boundary.error().code == ErrorCode::limit_exceeded) return boundary.error();
-    if (!boundary) {
-      feature.unreadable.push_back({std::move(source), std::move(boundary).error()});
-      return Done{};
-    }
-    if (units->uncertainty) boundary->solid.tolerance = *units->uncertainty;
     const double metre = units->metre;
     const surfaces::Affine placement{{{{metre, 0, 0}, {0, metre, 0}, {0, 0, metre}}}, {}};
-    auto solid = curved_solid(std::move(boundary->solid), placement, source, 0, options_.chord,
-                              budget_, options_.limits);
-    if (!solid) {
-      if (solid.error().code == ErrorCode::invalid_argument) return solid.error();
-      feature.unreadable.push_back({std::move(source), std::move(solid).error()});
-      return Done{};
-    }
-    feature.solids.push_back(*std::move(solid));
-    return Done{};
+    return add_curved_solid(reader_.file(),
+                            {place.id, units->radian, units->uncertainty, placement, 0,
+                             SolidSource{id, std::string(place.type), "", 0, 0, ""}},
+                            options_, budget_, document_, feature);
   }
 
   EntityReader reader_;
   const ReadOptions& options_;
-  std::uint64_t budget_;                               // curved_solid()
+  std::uint64_t budget_;                               // add_curved_solid()
   std::map<std::uint64_t, std::uint64_t> context_of_;  // item of a representation -> its context
   std::map<std::uint64_t, FileUnits> units_;           // context -> units
   Document document_;

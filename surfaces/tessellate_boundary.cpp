@@ -50,7 +50,7 @@ class Tessellation {
       result_.measures.rounds = round;
       if (Status status = sample_edges(); !status) return status.error();
       if (Status status = mesh_faces(round == kMostSamplings); !status) return status.error();
-      if (!has_crossing_) break;
+      if (!is_too_coarse_) break;
     }
     if (Status status = weld(); !status) return status.error();
     make_rings();
@@ -58,6 +58,7 @@ class Tessellation {
     result_.measures.turned =
         static_cast<std::uint64_t>(std::count(is_turned_.begin(), is_turned_.end(), true));
     add_shells();
+    add_strips();
     return std::move(result_);
   }
 
@@ -67,14 +68,16 @@ class Tessellation {
     if (!(chord > 0) || !std::isfinite(chord)) {
       return fail(ErrorCode::invalid_argument, "the chord is not a positive number of metres");
     }
-    result_.lattice_exponent = options_.lattice_exponent;
-    if (options_.lattice_exponent == 0) {
-      int exponent = kCoarsestLattice;
-      while (exponent > kFinestLattice && metres_of_step(exponent) > kLatticeShare * chord) {
-        --exponent;
-      }
-      result_.lattice_exponent = exponent;
+    int exponent = options_.lattice_exponent.value_or(kCoarsestLattice);
+    if (exponent < kFinestLattice || exponent > kCoarsestLattice) {
+      return fail(ErrorCode::invalid_argument,
+                  "the lattice is no power of ten from 1e-9 to 1000 metres");
     }
+    while (!options_.lattice_exponent && exponent > kFinestLattice &&
+           metres_of_step(exponent) > kLatticeShare * chord) {
+      --exponent;
+    }
+    result_.lattice_exponent = exponent;
     // Rounding moves a vertex by half the diagonal of a cell at most.
     const double rounding = std::sqrt(0.75) * metres_of_step(result_.lattice_exponent);
     if (rounding >= chord) {
@@ -178,7 +181,7 @@ class Tessellation {
     result_.left_out.clear();
     result_.measures.triangles = 0;
     result_.measures.chord_error = 0;
-    has_crossing_ = false;
+    is_too_coarse_ = false;
     for (Index f = 0; f < solid_.faces.size(); ++f) {
       const BoundaryFace& face = solid_.faces[f];
       if (!face.unreadable.empty()) {
@@ -193,14 +196,16 @@ class Tessellation {
         result_.left_out.push_back({face.name, mesh.error().message});
         continue;
       }
-      if (!mesh->crossing.empty() || mesh->triangles.empty()) {
-        has_crossing_ = !mesh->crossing.empty();
-        if (!has_crossing_ || is_last_round) {
-          result_.left_out.push_back({face.name, "its loops cross or touch on the surface"});
-          continue;
-        }
-        for (const Index edge : mesh->crossing) finer_[edge] *= 4;
-        return Done{};
+      const bool has_crossing = !mesh->crossing.empty();
+      if (has_crossing ? is_last_round : mesh->triangles.empty()) {
+        result_.left_out.push_back({face.name, "its loops cross or touch on the surface"});
+        continue;
+      }
+      if (!is_last_round && (has_crossing || !mesh->coarse.empty())) {
+        for (const Index edge : has_crossing ? mesh->crossing : mesh->coarse) finer_[edge] *= 4;
+        is_too_coarse_ = true;
+        if (has_crossing) return Done{};
+        continue;
       }
       result_.measures.gap = std::max(result_.measures.gap, mesh->gap);
       result_.measures.chord_error = std::max(result_.measures.chord_error, mesh->chord_error);
@@ -355,6 +360,7 @@ class Tessellation {
   }
 
   void add_triangles(Index face) {
+    const auto first = static_cast<Index>(result_.arrays.facet_offsets.size() - 1);
     for (const Triangle& triangle : triangles_[face]) {
       Triangle t{number_[triangle[0]], number_[triangle[1]], number_[triangle[2]]};
       if (is_turned_[face]) std::swap(t[1], t[2]);
@@ -363,6 +369,29 @@ class Tessellation {
       result_.arrays.end_ring();
       result_.arrays.end_facet();
     }
+    curved_.push_back({face, first, static_cast<Index>(result_.arrays.facet_offsets.size() - 1)});
+  }
+
+  /// Makes the strips of curved faces, whose triangles are the way round that they stay.
+  void add_strips() {
+    const SolidArrays& arrays = result_.arrays;
+    TriangleShapes shapes;
+    for (const CurvedFacets& facets : curved_) {
+      std::vector<Triangle> triangles;
+      for (Index facet = facets.begin; facet < facets.end; ++facet) {
+        const auto corner =
+            arrays.ring_vertices.begin() + arrays.ring_offsets[arrays.facet_offsets[facet]];
+        triangles.push_back({corner[0], corner[1], corner[2]});
+      }
+      auto strips = shapes.add(triangles, result_.positions);
+      if (options_.keeps_strips) {
+        result_.strips.push_back({solid_.faces[facets.face].name, std::move(strips)});
+      }
+    }
+    result_.measures.strips = shapes.strips();
+    result_.measures.indices = shapes.indices();
+    result_.measures.mean_least_angle = shapes.mean_least_angle();
+    result_.measures.worst_least_angle = shapes.worst_least_angle();
   }
 
   std::vector<Index> ring_of(const EdgeLoop& loop) const {
@@ -403,6 +432,13 @@ class Tessellation {
     result_.arrays.end_facet();
   }
 
+  /// The facets [begin, end) of a curved face.
+  struct CurvedFacets {
+    Index face = kNone;
+    Index begin = 0;
+    Index end = 0;
+  };
+
   const BoundaryRepresentation& solid_;
   const TessellateOptions& options_;
   double chord_ = 0;           // what rounding leaves of the chord
@@ -413,8 +449,9 @@ class Tessellation {
   std::vector<std::vector<Triangle>> triangles_;        // by face
   std::vector<std::vector<std::vector<Index>>> rings_;  // by face, of planar ones: positions
   std::vector<Index> number_;                           // vertex of the pool -> position
-  bool has_crossing_ = false;
-  std::vector<bool> is_turned_;  // by face
+  bool is_too_coarse_ = false;                          // edges need more points
+  std::vector<bool> is_turned_;                         // by face
+  std::vector<CurvedFacets> curved_;
   TessellatedBoundary result_;
 };
 

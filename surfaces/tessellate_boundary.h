@@ -6,20 +6,23 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "geometry/solid.h"
 #include "surfaces/boundary_representation.h"
+#include "surfaces/face_strips.h"
 
 namespace watertight::surfaces {
 
 struct TessellateOptions {
   double chord = 0.01;  // metres: how far triangles may be from the surface, and chords from edges
-  /// The step of the lattice of vertices, as a power of ten of a metre; 0: the largest that is not
-  /// above a hundredth of the chord.
-  int lattice_exponent = 0;
+  /// The step of the lattice of vertices, as a power of ten of a metre; nothing: the largest that
+  /// is not above a hundredth of the chord.
+  std::optional<int> lattice_exponent = {};
+  bool keeps_strips = false;                // in TessellatedBoundary::strips
   std::size_t most_triangles = 10'000'000;  // of a solid
 };
 
@@ -35,9 +38,13 @@ struct TessellationMeasures {
   std::uint64_t samples = 0;    // vertices on edges, ends included
   std::uint64_t triangles = 0;  // of curved faces
   double chord_error = 0;       // metres: the largest measured distance from a surface
-  double gap = 0;            // metres: the largest distance of an edge from a surface of its faces
-  int rounds = 1;            // of sampling edges
-  std::uint64_t turned = 0;  // faces whose loops run against those of their neighbours
+  double gap = 0;             // metres: the largest distance of an edge from a surface of its faces
+  int rounds = 1;             // of sampling edges
+  std::uint64_t turned = 0;   // faces whose loops run against those of their neighbours
+  std::uint64_t strips = 0;   // of the triangles of curved faces
+  std::uint64_t indices = 0;  // of all strips
+  double mean_least_angle = 0;  // degrees: of the triangles of curved faces; 0 without any
+  double worst_least_angle = 0;
 };
 
 struct TessellatedBoundary {
@@ -48,6 +55,8 @@ struct TessellatedBoundary {
   int lattice_exponent = -4;
   TessellationMeasures measures;
   std::vector<LeftOutFace> left_out;
+  /// The strips of each curved face, whose vertices are indices into `positions`.
+  std::vector<FaceStrips> strips;
 };
 
 /// Tessellates a solid. Edges whose chords cross in a face are sampled more densely, at most 8

@@ -260,29 +260,34 @@ class FaceMesh {
     const std::size_t before = inner_.size();
     for (const Triangle& triangle : mesh.triangles) {
       split_shared_sides(mesh, triangle);
-      if (!is_too_far(mesh, triangle)) continue;
-      // The middle of the longest side that is no part of a loop, else of the triangle.
-      std::optional<Point> middle;
-      double longest = 0;
-      Point centre{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index a = triangle[k];
-        const Index b = triangle[(k + 1) % 3];
-        const Point& p = mesh.points[a];
-        const Point& q = mesh.points[b];
-        centre = {centre.x + p.x / 3, centre.y + p.y / 3, 0};
-        const double size = (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-        if (is_border(a, b) || size <= longest) continue;
-        longest = size;
-        middle = Point{(p.x + q.x) / 2, (p.y + q.y) / 2, 0};
-      }
-      const Point wanted = middle.value_or(centre);
+      if (!may_be_far(mesh, triangle) || measured(mesh, triangle) <= chord_ / 2) continue;
+      const Point wanted = divided_at(mesh, triangle);
       if (!is_beside_border(wanted)) inner_.push_back(wanted);
     }
     std::sort(inner_.begin() + static_cast<std::ptrdiff_t>(before), inner_.end());
     inner_.erase(std::unique(inner_.begin() + static_cast<std::ptrdiff_t>(before), inner_.end()),
                  inner_.end());
     return inner_.size() > before;
+  }
+
+  /// Where a triangle is divided: in the middle of its longest side that is no part of a loop, else
+  /// in its own middle.
+  Point divided_at(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
+    std::optional<Point> middle;
+    double longest = 0;
+    Point centre{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = triangle[k];
+      const Index b = triangle[(k + 1) % 3];
+      const Point& p = mesh.points[a];
+      const Point& q = mesh.points[b];
+      centre = {centre.x + p.x / 3, centre.y + p.y / 3, 0};
+      const double size = (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+      if (is_border(a, b) || size <= longest) continue;
+      longest = size;
+      middle = Point{(p.x + q.x) / 2, (p.y + q.y) / 2, 0};
+    }
+    return middle.value_or(centre);
   }
 
   /// How far the middle of each chord around the face is from the surface's point there, in metres.
@@ -300,24 +305,26 @@ class FaceMesh {
   /// Whether a point is so near to a chord around the face that the surface may pass the chord
   /// there: a triangle between them might stand outside the face.
   bool is_beside_border(const Point& p, std::span<const std::size_t> edges) const {
-    for (const std::size_t i : edges) {
-      const double reach = clearance_.of_edges[i];
-      const Point& a = region_.points[region_.edges[i][0]];
-      const Point& b = region_.points[region_.edges[i][1]];
-      if (p.x < std::min(a.x, b.x) - reach || p.x > std::max(a.x, b.x) + reach ||
-          p.y < std::min(a.y, b.y) - reach || p.y > std::max(a.y, b.y) + reach) {
-        continue;
-      }
-      const double u = b.x - a.x;
-      const double v = b.y - a.y;
-      const double squared = u * u + v * v;
-      const double along =
-          squared > 0 ? std::clamp(((p.x - a.x) * u + (p.y - a.y) * v) / squared, 0.0, 1.0) : 0.0;
-      const double x = p.x - a.x - along * u;
-      const double y = p.y - a.y - along * v;
-      if (x * x + y * y <= reach * reach) return true;
+    return std::any_of(edges.begin(), edges.end(),
+                       [&](std::size_t edge) { return is_beside(p, edge); });
+  }
+
+  bool is_beside(const Point& p, std::size_t edge) const {
+    const double reach = clearance_.of_edges[edge];
+    const Point& a = region_.points[region_.edges[edge][0]];
+    const Point& b = region_.points[region_.edges[edge][1]];
+    if (p.x < std::min(a.x, b.x) - reach || p.x > std::max(a.x, b.x) + reach ||
+        p.y < std::min(a.y, b.y) - reach || p.y > std::max(a.y, b.y) + reach) {
+      return false;
     }
-    return false;
+    const double u = b.x - a.x;
+    const double v = b.y - a.y;
+    const double squared = u * u + v * v;
+    const double along =
+        squared > 0 ? std::clamp(((p.x - a.x) * u + (p.y - a.y) * v) / squared, 0.0, 1.0) : 0.0;
+    const double x = p.x - a.x - along * u;
+    const double y = p.y - a.y - along * v;
+    return x * x + y * y <= reach * reach;
   }
 
   /// Puts a point into each side of a triangle inside the face that joins two points of another
@@ -343,7 +350,8 @@ class FaceMesh {
     return region_.edges[a][1] == b || region_.edges[b][1] == a;
   }
 
-  bool is_too_far(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
+  /// Whether the bound of the second derivatives allows a triangle to be too far from the surface.
+  bool may_be_far(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
     Parameters low = parameters_of(mesh.points[triangle[0]]);
     Parameters high = low;
     for (const Index corner : triangle) {
@@ -356,13 +364,13 @@ class FaceMesh {
     const double u = high[0] - low[0];
     const double v = high[1] - low[1];
     const SecondDerivatives bend = bends_.over(low, high);
-    if ((bend.uu * u * u + 2 * bend.uv * u * v + bend.vv * v * v) / 8 <= chord_) return false;
-    return is_measured_far(mesh, triangle);
+    return (bend.uu * u * u + 2 * bend.uv * u * v + bend.vv * v * v) / 8 > chord_;
   }
 
-  /// The bound allows for more than surfaces do: measures at points spread over the triangle, which
-  /// must be nearer than half of the chord.
-  bool is_measured_far(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
+  /// The bound allows for more than surfaces do: the largest distance between points spread over a
+  /// triangle and those of the surface with their coordinates.
+  double measured(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
+    double most = 0;
     std::array<Parameters, 3> at;
     std::array<Vector3, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -381,10 +389,19 @@ class FaceMesh {
           place = {place[0] + weights[k] * at[k][0], place[1] + weights[k] * at[k][1]};
           flat = flat + corners[k] * weights[k];
         }
-        if (length(point_at(surface_, place).place - flat) > chord_ / 2) return true;
+        most = std::max(most, length(point_at(surface_, place).place - flat));
       }
     }
-    return false;
+    return most;
+  }
+
+  /// The edges whose clearance keeps a triangle from being divided.
+  void add_coarse_edges(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) {
+    const Point wanted = divided_at(mesh, triangle);
+    for (const std::size_t edge : edges_near_row(wanted.y)) {
+      const Index own = border_[region_.edges[edge][0]].edge;
+      if (own != kNone && is_beside(wanted, edge)) result_.coarse.push_back(own);
+    }
   }
 
   void take(const tessellate::TrimmedTriangles& mesh, bool is_flipped) {
@@ -397,12 +414,16 @@ class FaceMesh {
     result_.gap = loops_.gap;
     for (const Triangle& t : mesh.triangles) {
       measure_error(mesh, t);
+      if (may_be_far(mesh, t) && measured(mesh, t) > chord_) add_coarse_edges(mesh, t);
       Triangle triangle{vertex[t[0]], vertex[t[1]], vertex[t[2]]};
       if (is_flipped) std::swap(triangle[1], triangle[2]);
       const bool is_collapsed =
           triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
       if (!is_collapsed) result_.triangles.push_back(triangle);
     }
+    std::sort(result_.coarse.begin(), result_.coarse.end());
+    result_.coarse.erase(std::unique(result_.coarse.begin(), result_.coarse.end()),
+                         result_.coarse.end());
   }
 
   /// Measures how far the middle of a triangle is from the surface's point with its coordinates.

@@ -18,6 +18,9 @@ struct FaceTriangles {
   /// Edges whose chords cross in the plane of (u, v): with more points they may not. No triangles
   /// then.
   std::vector<Index> crossing;
+  /// Edges beside which triangles are farther from the surface than the chord: with more points
+  /// they need not be.
+  std::vector<Index> coarse;
 };
 
 /// The curved faces that meet at each vertex on an edge.

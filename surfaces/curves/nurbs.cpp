@@ -9,7 +9,6 @@
 namespace watertight::surfaces {
 namespace {
 
-constexpr std::size_t kMostDegree = 30;
 constexpr double kSameEnd = 1e-9;  // of the size: ends at one place
 
 Error malformed(std::string message) {

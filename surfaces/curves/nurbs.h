@@ -14,6 +14,8 @@
 
 namespace watertight::surfaces {
 
+inline constexpr std::size_t kMostDegree = 30;
+
 /// Knots with multiplicities written out: degree + 1 + number of control points of them.
 struct Knots {
   std::size_t degree = 0;
@@ -22,7 +24,8 @@ struct Knots {
 
 /// The curve of a B-spline. A curve whose ends are one point is closed. Errors: malformed for
 /// knots that decrease or are too few or too many, an inner knot more often than the degree, a
-/// weight that is not positive, a number that is not finite; limit_exceeded for a degree above 30.
+/// weight that is not positive, a number that is not finite; limit_exceeded for a degree above
+/// kMostDegree.
 Result<Curve> curve_of(const Knots& knots, const std::vector<Vector3>& points,
                        const std::vector<double>& weights);
 

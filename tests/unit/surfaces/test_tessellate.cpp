@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "surfaces/curves/elementary.h"
 #include "surfaces/tessellate_boundary.h"
-#include "validate/certify.h"
+#include "tests/unit/surfaces/checked_solid.h"
 
 namespace watertight {
 namespace {
@@ -17,90 +16,7 @@ using surfaces::Vector3;
 using surfaces::operator+;
 using surfaces::operator-;
 using surfaces::operator*;
-
-Solid solid_of(const surfaces::TessellatedBoundary& result) {
-  SolidArrays arrays = result.arrays;
-  std::array<std::int64_t, 3> low{};
-  for (const auto& position : result.positions) {
-    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], position[axis]);
-  }
-  Lattice lattice;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    lattice.step[axis] = {1, result.lattice_exponent};
-    lattice.origin[axis] = {low[axis], low[axis] == 0 ? 0 : result.lattice_exponent};
-    while (lattice.origin[axis].mantissa != 0 && lattice.origin[axis].mantissa % 10 == 0) {
-      lattice.origin[axis] = {lattice.origin[axis].mantissa / 10,
-                              lattice.origin[axis].exponent + 1};
-    }
-  }
-  for (const auto& position : result.positions) {
-    arrays.vertices.push_back({static_cast<double>(position[0] - low[0]),
-                               static_cast<double>(position[1] - low[1]),
-                               static_cast<double>(position[2] - low[2])});
-  }
-  auto solid = Solid::make(std::move(arrays), lattice, 0);
-  REQUIRE(solid);
-  return *std::move(solid);
-}
-
-struct Wanted {
-  double volume = 0;
-  double area = 0;
-};
-
-using Distance = std::function<double(const Vector3&)>;  // from the curved surface
-
-/// The largest distance of 100 points of each triangle from the surface.
-double farthest(const surfaces::TessellatedBoundary& result, const Distance& distance) {
-  const SolidArrays& arrays = result.arrays;
-  const double step = std::pow(10.0, result.lattice_exponent);
-  double most = 0;
-  for (std::size_t ring = 0; ring + 1 < arrays.ring_offsets.size(); ++ring) {
-    const Index first = arrays.ring_offsets[ring];
-    if (arrays.ring_offsets[ring + 1] - first != 3) continue;  // a plane
-    std::array<Vector3, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        corners[k][axis] =
-            step * static_cast<double>(result.positions[arrays.ring_vertices[first + k]][axis]);
-      }
-    }
-    for (int i = 0; i < 13; ++i) {
-      for (int j = 0; i + j < 13; ++j) {
-        const double a = i / 12.0;
-        const double b = j / 12.0;
-        most = std::max(most, distance(corners[0] * a + corners[1] * b + corners[2] * (1 - a - b)));
-      }
-    }
-  }
-  return most;
-}
-
-/// Tessellates, and checks the verdict, the measures and the distance of the curved faces.
-surfaces::TessellatedBoundary check(const BoundaryRepresentation& solid, double chord,
-                                    const Wanted& wanted, const Distance& distance = {}) {
-  surfaces::TessellateOptions options;
-  options.chord = chord;
-  auto result = surfaces::tessellate(solid, options);
-  REQUIRE(result);
-  for (const auto& face : result->left_out) {
-    CAPTURE(face.name, face.reason);
-    CHECK(face.reason.empty());
-  }
-  CHECK(result->measures.chord_error <= chord);
-  if (distance) CHECK(farthest(*result, distance) <= chord);
-  CertifyOptions certify_options;
-  certify_options.proof = Proof::boundary;
-  const auto report = certify(solid_of(*result), nullptr, certify_options).report;
-  for (const auto& finding : report.findings) {
-    CAPTURE(finding.code, finding.detail);
-    CHECK(finding.severity != Severity::error);
-  }
-  REQUIRE(report.measures);
-  CHECK(std::abs(report.measures->volume - wanted.volume) < wanted.area * chord);
-  CHECK(std::abs(report.measures->area - wanted.area) < 0.1 * wanted.area);
-  return *std::move(result);
-}
+using test::check;
 
 /// Two circles around the axis z at heights `low` and `high`, with a face on each plane.
 BoundaryRepresentation between_circles(const Frame& frame, double low, double high,

@@ -30,6 +30,8 @@ struct ValidateCommand {
   RuleChoice rules;
   std::string surfaces = "check";       // "ignore", "check", "judge" or "as-solids"
   double chord = formats::kUsualChord;  // metres, for curved solids
+  std::optional<int> lattice_exponent;  // of a metre, for curved solids
+  std::string strips;                   // file for the strips of curved solids, "" for none
   std::string output;                   // file for the document as it was read, "" for none
   double seconds_per_solid = 0;  // the time that engines may take; 0: by the size of the solid
   std::string engine = "auto";   // "auto", "cgal" or "tetgen"

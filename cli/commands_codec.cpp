@@ -438,7 +438,7 @@ EncodedInput encode_one(const EncodeCommand& command, const files::InputFile& so
   reading.split_features = command.purpose == "ranges";
   reading.keep_text = *contract == formats::Contract::exact;
   reading.surfaces = surface_rule(command.surfaces).reading;
-  reading.chord = command.chord;
+  reading.curved = pipeline::curved_reading(command.chord);
   auto input = load(source, reading);
   if (!input) return {fail(command.input, input.error()), {}};
   delaunay::EngineWorkers workers(delaunay::EngineWorkers::Options{{}, {}, command.jobs});
@@ -557,14 +557,14 @@ Exit run(const ConvertCommand& command) {
   if (!whole) return fail(command.input, whole.error());
   if (makes_city_of_gml(command, *whole)) {
     options.surfaces = surface_rule(command.surfaces).reading;
-    options.chord = command.chord;
+    options.curved = pipeline::curved_reading(command.chord);
     auto city = pipeline::read_to_convert(whole->bytes, Format::gml, Format::city_json, options);
     if (!city) return fail(command.input, city.error());
     tell_notes(command.input, *city);
     return save_converted(command, *std::move(city));
   }
   options.surfaces = surface_rule(command.surfaces).reading;
-  options.chord = command.chord;
+  options.curved = pipeline::curved_reading(command.chord);
   auto input = files::load_input(whole->name, whole->bytes, options);
   if (!input) return fail(command.input, input.error());
   return save_converted(command, std::move(input->document));

@@ -156,7 +156,7 @@ Result<pipeline::IngestCounts> IngestRun::ingest(std::size_t number, SolidStore&
   formats::ReadOptions read;
   read.keep_text = options.contract == formats::Contract::exact;
   read.surfaces = options.surfaces;
-  read.chord = command_.chord;
+  read.curved = pipeline::curved_reading(command_.chord);
   const auto header = [&] { return pipeline::collection_header(store, command_.collection); };
   auto opened = files::open_input(*std::move(input), read, header);
   if (!opened) return std::move(opened).error();

@@ -198,7 +198,7 @@ Result<std::optional<DocumentRepair>> RepairRun::repair_lines() {
   formats::ReadOptions reading;
   reading.keep_text = true;
   reading.surfaces = surface_rule(command_.surfaces).reading;
-  reading.chord = command_.chord;
+  reading.curved = pipeline::curved_reading(command_.chord);
   auto input = files::open_input(*argument, reading);
   if (!input) return std::move(input).error();
   formats::FeatureReader& reader = input->reader;
@@ -236,7 +236,7 @@ Result<pipeline::RepairedText> RepairRun::repair_document() {
   formats::ReadOptions reading;
   reading.split_features = false;
   reading.surfaces = surface_rule(command_.surfaces).reading;
-  reading.chord = command_.chord;
+  reading.curved = pipeline::curved_reading(command_.chord);
   const auto threads = static_cast<unsigned>(command_.jobs);
   if (const auto from = formats::detect_format(whole->name, whole->bytes)) {
     const auto named = files::format_of_name(command_.output);
@@ -261,7 +261,7 @@ Status RepairRun::report_on(const Document& document, const DocumentRepair& outc
   if (Status begun = begin_reports(*format); !begun) return begun;
   formats::ReadOptions reading;
   reading.surfaces = surface_rule(command_.surfaces).reading;
-  reading.chord = command_.chord;
+  reading.curved = pipeline::curved_reading(command_.chord);
   const Status validated = pipeline::validate_repaired(
       document, *format, reading, outcome, &workers_, validation_,
       [&](pipeline::ValidatedFeature&& feature) {

@@ -106,7 +106,7 @@ class RowWriter {
 Exit run(const RowsCommand& command) {
   formats::ReadOptions options;
   options.surfaces = surface_rule(command.surfaces).reading;
-  options.chord = command.chord;
+  options.curved = pipeline::curved_reading(command.chord);
   RowWriter writer(options);
   Exit exit = Exit::valid;
   for (const files::InputFile& input : list_inputs(command.files)) {

@@ -12,6 +12,7 @@
 #include "cli/findings/finding_list.h"
 #include "cli/outputs/documents.h"
 #include "cli/outputs/report_files.h"
+#include "cli/outputs/strip_file.h"
 #include "cli/sources/input_list.h"
 #include "cli/terminal/printable.h"
 #include "cli/terminal/progress.h"
@@ -249,9 +250,10 @@ Result<formats::FeatureReader> Validation::with_cavities(const files::InputFile&
 Result<files::OpenedInput> Validation::read_and_save(const files::InputFile& source,
                                                      formats::ReadOptions reading) {
   reading.split_features = false;
-  if (is_in_use(command_.output)) {
+  for (const std::string& output : {command_.output, command_.strips}) {
+    if (output.empty() || !is_in_use(output)) continue;
     return Error{ErrorCode::invalid_argument,
-                 "the output '" + command_.output + "' would replace the input"};
+                 "the output '" + output + "' would replace the input"};
   }
   const auto whole = files::read_whole(source, options_.certify.limits);
   if (!whole) return whole.error();
@@ -262,13 +264,22 @@ Result<files::OpenedInput> Validation::read_and_save(const files::InputFile& sou
     error.message.insert(0, command_.output + ": ");
     return error;
   }
+  if (!command_.strips.empty()) {
+    if (Status saved = save_strips(input->document, command_.strips); !saved) {
+      Error error = std::move(saved).error();
+      error.message.insert(0, command_.strips + ": ");
+      return error;
+    }
+  }
   return files::OpenedInput{formats::FeatureReader::of(std::move(input->document)), std::nullopt};
 }
 
 Result<files::OpenedInput> Validation::open_source(const files::InputFile& source) {
   formats::ReadOptions reading;
   reading.surfaces = surface_rule(command_.surfaces).reading;
-  reading.chord = command_.chord;
+  reading.curved = pipeline::curved_reading(command_.chord);
+  reading.curved.lattice_exponent = command_.lattice_exponent;
+  reading.curved.keeps_strips = !command_.strips.empty();
   if (!command_.output.empty()) return read_and_save(source, reading);
   if (command_.interior_shells.empty()) return files::open_input(source, reading);
   auto reader = with_cavities(source);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <exception>
@@ -79,6 +80,32 @@ void add_chord(CLI::App& sub, double& chord) {
       ->capture_default_str();
 }
 
+/// The power of ten that a text is. Errors: a message.
+std::string read_power_of_ten(const std::string& text, std::optional<int>& exponent) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  constexpr std::array kPowers{1e-9, 1e-8, 1e-7, 1e-6, 1e-5,  1e-4,  1e-3,
+                               0.01, 0.1,  1.0,  10.0, 100.0, 1000.0};
+  const auto* const found = std::find(kPowers.begin(), kPowers.end(), number);
+  if (error != std::errc() || end != text.data() + text.size() || found == kPowers.end()) {
+    return "a power of ten from 1e-9 to 1000, not '" + text + "'";
+  }
+  exponent = static_cast<int>(found - kPowers.begin()) - 9;
+  return "";
+}
+
+void add_lattice(CLI::App& sub, std::optional<int>& exponent) {
+  sub.add_option_function<std::string>(
+         "--lattice",
+         [&exponent](const std::string& text) {
+           const std::string problem = read_power_of_ten(text, exponent);
+           if (!problem.empty()) throw CLI::ValidationError("--lattice", problem);
+         },
+         "step of the lattice of vertices, metres, a power of ten; default: the largest that is "
+         "not above a hundredth of the chord")
+      ->type_name("M");
+}
+
 void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("validate", "Report which solids are valid, and why others are not");
@@ -133,10 +160,13 @@ void add_validate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
 
 void add_tessellate(CLI::App& app, ValidateCommand& command, Chosen& chosen) {
   CLI::App* sub = app.add_subcommand(
-      "tessellate", "Write curved solids (IFC, STEP) as polyhedra, and report which are valid");
+      "tessellate",
+      "Write curved solids (IFC, STEP, BRep, patches) as polyhedra, and report which are valid");
   sub->add_option("IN", command.files, "document; - for standard input")->required()->expected(1);
   sub->add_option("-o,--output", command.output, "its extension decides the format")->required();
   add_chord(*sub, command.chord);
+  add_lattice(*sub, command.lattice_exponent);
+  sub->add_option("--strips", command.strips, "write the triangles as strips, JSON");
   sub->add_option("--report", command.report, "write the report as JSON");
   sub->add_option("--html", command.html, "write the report as a page with pictures");
   sub->add_flag("--no-times", command.leaves_times_out,

@@ -19,6 +19,8 @@ struct Ending {
   Format format;
 };
 constexpr std::array kEndings{
+    Ending{".brep.json", Format::brep},
+    Ending{".bpt", Format::bpt},
     Ending{".jsonl", Format::city_json_seq},
     Ending{".ndjson", Format::city_json_seq},
     Ending{".stl", Format::stl},
@@ -78,6 +80,7 @@ std::string_view json_type(std::string_view text) {
 // have. A sequence has a second JSON text after the line that ends the first one.
 Format json_format(std::string_view text) {
   const std::string_view type = json_type(text);
+  if (type == "BRep") return Format::brep;
   if (type == "Feature" || type == "FeatureCollection") return Format::json_fg;
   const std::size_t end = text.find('\n');
   if (end == std::string_view::npos) return Format::city_json;
@@ -147,8 +150,8 @@ Result<Format> format_of_text(std::string_view text) {
   return Error{
       ErrorCode::unsupported,
       "neither the file name nor the first bytes show the format; known formats: CityJSON, "
-      "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, IFC, STEP, WKT and "
-      "EWKB"};
+      "CityJSONSeq, JSON-FG, GML, OBJ, OFF, STL, PLY, POLY, IFC, STEP, "
+      "BRep, BPT, WKT and EWKB"};
 }
 
 }  // namespace

@@ -7,12 +7,12 @@
 
 #include "base/quantity.h"
 #include "formats/city_json/city_json.h"
+#include "formats/curved/curved_files.h"
 #include "formats/ewkb.h"
 #include "formats/gml/city/city.h"
 #include "formats/gml/gml.h"
 #include "formats/json_fg.h"
 #include "formats/mesh/mesh_text.h"
-#include "formats/part21/curved_files.h"
 #include "formats/text/kept_text.h"
 #include "formats/text/ring_search.h"
 
@@ -26,7 +26,10 @@ bool is_city(Format format) {
 }
 
 // Whether the rings of a format's solids are not in its text.
-bool is_curved(Format format) { return format == Format::ifc || format == Format::step; }
+bool is_curved(Format format) {
+  return format == Format::ifc || format == Format::step || format == Format::brep ||
+         format == Format::bpt;
+}
 
 // Errors: malformed for a solid that could not be read, and so cannot be written.
 Status all_readable(std::span<const Feature> features) {
@@ -138,6 +141,10 @@ std::string_view to_string(Format format) {
       return "ifc";
     case Format::step:
       return "step";
+    case Format::brep:
+      return "brep";
+    case Format::bpt:
+      return "bpt";
   }
   return "";
 }
@@ -163,9 +170,10 @@ Result<Contract> contract_named(std::string_view name) {
 }
 
 Result<Format> format_named(std::string_view name) {
-  for (const Format format : {Format::city_json, Format::city_json_seq, Format::obj, Format::off,
-                              Format::wkt, Format::ewkb, Format::gml, Format::json_fg, Format::stl,
-                              Format::ply, Format::poly, Format::ifc, Format::step}) {
+  for (const Format format :
+       {Format::city_json, Format::city_json_seq, Format::obj, Format::off, Format::wkt,
+        Format::ewkb, Format::gml, Format::json_fg, Format::stl, Format::ply, Format::poly,
+        Format::ifc, Format::step, Format::brep, Format::bpt}) {
     if (to_string(format) == name) return format;
   }
   return Error{ErrorCode::malformed, "stored in an unknown format '" + std::string(name) + "'"};
@@ -209,6 +217,10 @@ Result<Document> read_as(ByteView bytes, Format format, const ReadOptions& optio
       return read_ifc(as_text(bytes), options);
     case Format::step:
       return read_step(as_text(bytes), options);
+    case Format::brep:
+      return read_brep(as_text(bytes), options);
+    case Format::bpt:
+      return read_bpt(as_text(bytes), options);
     default:
       break;
   }
@@ -226,6 +238,7 @@ bool has_byte_order_mark(ByteView bytes, Format format) {
     case Format::wkt:
     case Format::ifc:
     case Format::step:
+    case Format::bpt:
       return as_text(bytes).starts_with(kByteOrderMark);
     case Format::stl:
       return as_text(bytes).starts_with(kByteOrderMark) && !is_binary_stl(bytes);

@@ -36,15 +36,17 @@ enum class Format : std::uint8_t {
   ply,      // text and binary; read only
   poly,     // TetGen; read only
   ifc,      // IFC4, as ISO 10303-21 text; read only, curved solids are tessellated
-  step      // STEP AP203, AP214 and AP242; read only, curved solids are tessellated
+  step,     // STEP AP203, AP214 and AP242; read only, curved solids are tessellated
+  brep,     // boundary representations in JSON; read only, tessellated
+  bpt       // Bezier patches; read only, tessellated
 };
 std::string_view to_string(Format format);
 /// The format of this name. Errors: malformed.
 Result<Format> format_named(std::string_view name);
 
 /// The format by the file name ("x.city.json", "x.jsonl", "x.obj", "x.off", "x.wkt", "x.wkb",
-/// "x.ewkb", "x.gml", "x.xml", "x.stl", "x.ply", "x.poly", "x.ifc", "x.step"), else by the first
-/// bytes. Errors: unsupported.
+/// "x.ewkb", "x.gml", "x.xml", "x.stl", "x.ply", "x.poly", "x.ifc", "x.step", "x.brep.json",
+/// "x.bpt"), else by the first bytes. Errors: unsupported.
 Result<Format> detect_format(std::string_view file_name, ByteView bytes);
 
 /// Whether detect_format() knows the ending of a file name.
@@ -74,11 +76,23 @@ struct Tessellation {
   double gap = 0;               // the largest distance of an edge from a surface of its faces
   int rounds = 1;               // of sampling edges
   std::uint64_t turned = 0;     // faces that the file has the wrong way round
+  int halvings = 0;             // of the chord that was asked for, until no facets crossed
+  std::uint64_t strips = 0;     // of the triangles of curved faces
+  std::uint64_t indices = 0;    // of all strips
+  double mean_least_angle = 0;  // degrees: of the triangles of curved faces; 0 without any
+  double worst_least_angle = 0;
   struct LeftOut {
     std::string face;  // "#104"
     std::string reason;
   };
   std::vector<LeftOut> left_out = {};
+  struct FaceStrips {
+    std::string face;
+    /// Vertices of the solid; every three in turn are a triangle, every second one the other way
+    /// round, and one with two equal vertices is none.
+    std::vector<std::vector<Index>> strips;
+  };
+  std::vector<FaceStrips> face_strips = {};  // if CurvedReading::keeps_strips; of curved faces
 };
 
 /// True for a geometry whose boundaries are facets without shells around them (MultiSurface,
@@ -195,6 +209,19 @@ enum class Surfaces : std::uint8_t {
 
 inline constexpr double kUsualChord = 0.01;  // metres
 
+/// How curved solids become polyhedra.
+struct CurvedReading {
+  double chord = kUsualChord;  // metres: how far triangles may be from their surfaces
+  /// The step of the lattice of vertices, as a power of ten of a metre; nothing: the largest that
+  /// is not above a hundredth of the chord.
+  std::optional<int> lattice_exponent = {};
+  bool keeps_strips = false;  // in Tessellation::face_strips
+  /// Whether facets of a solid cross. A solid where they do is tessellated again with half the
+  /// chord, at most 4 times and with at most 100,000 triangles; if they still cross, it stays as it
+  /// was. Null: nobody looks.
+  bool (*has_crossing)(const Solid& solid) = nullptr;
+};
+
 struct ReadOptions {
   Limits limits;
   /// Whether a CityJSON document becomes one feature per top-level object (stores), or one feature
@@ -204,8 +231,7 @@ struct ReadOptions {
   /// were read. A document other than a sequence keeps its text unless `split_features` is true.
   bool keep_text = false;
   Surfaces surfaces = Surfaces::ignore;
-  /// How far the triangles of curved solids may be from their surfaces, in metres.
-  double chord = kUsualChord;
+  CurvedReading curved = {};
 };
 
 /// Reads a document. Errors: malformed, unsupported or limit_exceeded with byte offset (syntax) or

@@ -232,6 +232,10 @@ Result<Policy> policy_named(const std::string& name) {
                "the policy for invalid features is refuse, skip or keep"};
 }
 
+formats::CurvedReading curved_reading(double chord) {
+  return {chord, {}, false, validate::has_crossing_facets};
+}
+
 Result<SurfaceRule> surface_rule_named(const std::string& name) {
   if (name == "ignore") return SurfaceRule{formats::Surfaces::ignore, Severity::warning};
   if (name == "check") return SurfaceRule{formats::Surfaces::read, Severity::warning};

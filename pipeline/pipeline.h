@@ -83,6 +83,10 @@ struct SurfaceRule {
 /// invalid_argument.
 Result<SurfaceRule> surface_rule_named(const std::string& name);
 
+/// How curved solids are read wherever they are judged or stored: one whose facets cross at this
+/// chord, in metres, is tessellated at a smaller one.
+formats::CurvedReading curved_reading(double chord = formats::kUsualChord);
+
 /// The options with what the reader of a solid noted about it. Keeps references to `submitted`.
 CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions& options);
 

@@ -99,7 +99,11 @@ void write_tessellation(JsonText& json, const formats::Tessellation& made) {
   json.key("samples").value(made.samples).key("triangles").value(made.triangles);
   json.key("chord").value(made.chord).key("chord_error").value(made.chord_error);
   json.key("gap").value(made.gap).key("rounds").value(made.rounds);
-  json.key("turned").value(made.turned).key("left_out").open('[');
+  json.key("turned").value(made.turned).key("halvings").value(made.halvings);
+  json.key("strips").value(made.strips).key("indices").value(made.indices);
+  json.key("mean_least_angle").value(made.mean_least_angle);
+  json.key("worst_least_angle").value(made.worst_least_angle);
+  json.key("left_out").open('[');
   for (const formats::Tessellation::LeftOut& face : made.left_out) {
     json.open('{').key("face").value(face.face).key("reason").value(face.reason).close('}');
   }

@@ -137,6 +137,10 @@ std::string_view format_name(Format format) {
       return "IFC";
     case Format::step:
       return "STEP";
+    case Format::brep:
+      return "BRep";
+    case Format::bpt:
+      return "BPT";
   }
   return "unknown";
 }

@@ -364,6 +364,16 @@ Inspection examine_placed(const Solid& solid, delaunay::EngineWorkers* workers,
 
 }  // namespace
 
+bool has_crossing_facets(const Solid& solid) {
+  ExaminedSolid examined(solid, {}, {});
+  check_rings(examined);
+  check_facets(examined);
+  check_shells(examined);
+  check_intersections(examined, check_duplicate_shells(examined), {}, 1);
+  return examined.findings.has(kShellSelfIntersection) ||
+         examined.findings.has(kIntersectionShells);
+}
+
 Inspection certify(const Solid& solid, delaunay::EngineWorkers* workers,
                    const CertifyOptions& options) {
   Inspection inspection = !options.unreadable.empty()    ? unread(options)

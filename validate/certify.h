@@ -69,6 +69,10 @@ struct Inspection {
   std::optional<ValidSolid> unplaced;
 };
 
+/// Whether the facets of a solid intersect where they must not (findings 306 and 401). Exact. Cost:
+/// O(n log n) for n triangles.
+bool has_crossing_facets(const Solid& solid);
+
 /// Validates a solid. Never fails: the report lists the rules that could not be evaluated.
 /// Deterministic except for `seconds` and time-outs of engines. `workers` may be null (rung 0
 /// only). Thread-safe.

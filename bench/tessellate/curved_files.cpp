@@ -49,7 +49,8 @@ double diagonal_of(const formats::Document& document) {
 
 void run(const char* path, double chord) {
   formats::ReadOptions options;
-  options.chord = chord;
+  options.curved.chord = chord;
+  options.curved.has_crossing = validate::has_crossing_facets;
   const auto start = std::chrono::steady_clock::now();
   const auto document = bench::read_file(path, options);
   const double reading = seconds_since(start);

@@ -38,10 +38,19 @@ std::string tessellation_words(const pipeline::InspectedSolid& solid) {
     text.append(" became ").append(quantity(measures->facets, "facet"));
     text.append(", volume ").append(brief(measures->volume)).append(" m3");
   }
+  if (made.strips > 0) {
+    const double ratio = static_cast<double>(made.indices) / static_cast<double>(made.triangles);
+    text.append(", ").append(quantity(made.strips, "strip")).append(" (").append(brief(ratio));
+    text.append(" indices a triangle)");
+  }
   text.append(", chord error ").append(brief(made.chord_error)).append(" m (limit ");
   text.append(brief(made.chord)).append(")");
   if (made.gap > 0) {
     text.append(", edges up to ").append(brief(made.gap)).append(" m off faces");
+  }
+  if (made.halvings > 0) {
+    text.append(", chord halved ").append(quantity(made.halvings, "time"));
+    text.append(" until no facets crossed");
   }
   if (made.turned > 0) text.append(", ").append(quantity(made.turned, "face")).append(" turned");
   return text;

@@ -4,32 +4,27 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "formats/document.h"
-#include "formats/part21/part21.h"
 #include "formats/surface.h"
 #include "surfaces/boundary_representation.h"
 
 namespace watertight::formats {
 
-/// A solid of a file, and where it is.
+/// Where a solid is.
 struct CurvedSource {
-  std::uint64_t id = 0;             // the instance
-  double radian = 1;                // radians of a unit of angles
-  std::optional<double> tolerance;  // metres: what the file says; BoundaryRepresentation's without
-  surfaces::Affine placement;       // from the units of the file to metres
+  surfaces::Affine placement;  // from the units of the boundary to metres
   std::uint32_t srid = 0;
   SolidSource source;
 };
 
-/// Reads a solid, tessellates it, and adds it to `feature`, which may be one of `document`: what
-/// became of its faces and edges is in SubmittedSolid::tessellation, readings of doubtful input are
-/// notes of the document. A solid that cannot be read or tessellated becomes unreadable. `budget`
-/// is the number of facets that the document may still have, so that a short text cannot ask for
-/// any memory; those of the solid are taken from it. Errors: limit_exceeded for a file with more
-/// parts than Limits allow; invalid_argument for a chord that is no positive number.
-Status add_curved_solid(const Part21& file, CurvedSource from, const ReadOptions& options,
-                        std::uint64_t& budget, Document& document, Feature& feature);
+/// Tessellates a solid that was read, and adds it to `feature`: what became of its faces and edges
+/// is in SubmittedSolid::tessellation. A solid that could not be read or cannot be tessellated
+/// becomes unreadable. `budget` is the number of facets that the document may still have, so that a
+/// short text cannot ask for any memory; those of the solid are taken from it. Errors:
+/// limit_exceeded for a boundary with more parts than Limits allow; invalid_argument for a chord
+/// that is no positive number, and for a lattice that is too coarse for it.
+Status add_curved_solid(Result<surfaces::BoundaryRepresentation> boundary, CurvedSource from,
+                        const ReadOptions& options, std::uint64_t& budget, Feature& feature);
 
 }  // namespace watertight::formats

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "base/quantity.h"
+#include "formats/curved/curved_files.h"
 #include "formats/part21/boundary_reader.h"
-#include "formats/part21/curved_files.h"
-#include "formats/part21/curved_solid.h"
+#include "formats/part21/solid_instance.h"
 #include "formats/part21/units.h"
 #include "formats/text/numbers.h"
 
@@ -296,10 +296,9 @@ class IfcReader {
           {},
           {}};
     }
-    return add_curved_solid(
-        reader_.file(),
-        {id, units_.radian, precision_ * units_.metre, placement, srid_, std::move(source)},
-        options_, budget_, document_, feature);
+    return add_solid_instance(reader_.file(), {id, units_.radian, precision_ * units_.metre},
+                              {placement, srid_, std::move(source)}, options_, budget_, document_,
+                              feature);
   }
 
   EntityReader reader_;

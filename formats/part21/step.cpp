@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "formats/curved/curved_files.h"
 #include "formats/part21/boundary_reader.h"
-#include "formats/part21/curved_files.h"
-#include "formats/part21/curved_solid.h"
+#include "formats/part21/solid_instance.h"
 #include "formats/part21/units.h"
 
 namespace watertight::formats {
@@ -95,10 +95,10 @@ class StepReader {
     feature.id = id;
     const double metre = units->metre;
     const surfaces::Affine placement{{{{metre, 0, 0}, {0, metre, 0}, {0, 0, metre}}}, {}};
-    return add_curved_solid(reader_.file(),
-                            {place.id, units->radian, units->uncertainty, placement, 0,
-                             SolidSource{id, std::string(place.type), "", 0, 0, ""}},
-                            options_, budget_, document_, feature);
+    return add_solid_instance(
+        reader_.file(), {place.id, units->radian, units->uncertainty},
+        {placement, 0, SolidSource{id, std::string(place.type), "", 0, 0, ""}}, options_, budget_,
+        document_, feature);
   }
 
   EntityReader reader_;

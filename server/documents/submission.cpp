@@ -79,11 +79,14 @@ constexpr auto kNames = std::to_array<FormatName>({
     {"poly", "", Format::poly},
     {"ifc", "application/x-step", Format::ifc},
     {"step", "model/step", Format::step},
+    {"brep", "application/vnd.watertight.brep+json", Format::brep},
+    {"bpt", "", Format::bpt},
 });
 
 bool is_allowed(Format format, AcceptedFormats accepted) {
   constexpr std::array kWithIds = {Format::city_json, Format::city_json_seq, Format::gml,
-                                   Format::json_fg,   Format::ifc,           Format::step};
+                                   Format::json_fg,   Format::ifc,           Format::step,
+                                   Format::brep};
   return accepted == AcceptedFormats::all ||
          std::find(kWithIds.begin(), kWithIds.end(), format) != kWithIds.end();
 }
@@ -278,7 +281,7 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
     submission.problem = to_problem(chord.error());
     return submission;
   }
-  options.chord = *chord;
+  options.curved = pipeline::curved_reading(*chord);
   format = format_of_content(*format, body);
   const bool is_sequence_body = *format == Format::city_json_seq;
   submission.problem =
@@ -327,7 +330,7 @@ Conversion read_conversion(const RoutedRequest& request, std::optional<Format> t
     conversion.problem = to_problem(chord.error());
     return conversion;
   }
-  options.chord = *chord;
+  options.curved = pipeline::curved_reading(*chord);
   const ByteView bytes = as_bytes(request.request.body);
   auto document = to ? pipeline::read_to_convert(bytes, body.format, *to, options)
                      : formats::read_document(bytes, body.format, options);

@@ -156,6 +156,7 @@ Result<pipeline::IngestCounts> Run::store(pipeline::Ingestion& ingestion, files:
   }
   formats::ReadOptions read;
   read.limits = limits;
+  read.curved = pipeline::curved_reading();
   read.surfaces = options.surfaces;
   const auto header = [&] {
     return pipeline::collection_header(*run_.service.store, options.collection);

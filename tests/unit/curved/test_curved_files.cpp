@@ -16,7 +16,7 @@ Result<Document> read(const std::string& text, double chord = 0.001) {
   const auto format = formats::detect_format("", as_bytes(text));
   REQUIRE(format);
   formats::ReadOptions options;
-  options.chord = chord;
+  options.curved.chord = chord;
   return formats::read_document(as_bytes(text), *format, options);
 }
 

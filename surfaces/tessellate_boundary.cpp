@@ -14,6 +14,7 @@ namespace watertight::surfaces {
 namespace {
 
 constexpr int kMostSamplings = 8;  // of sampling edges whose chords cross
+constexpr int kMostForDistance = 2;  // of sampling edges because triangles beside them are far off
 constexpr double kLatticeShare = 0.01;
 constexpr double kEdgeShare =
     0.5;  // of the chord, for edges: triangles beside them are farther off
@@ -49,7 +50,7 @@ class Tessellation {
     for (int round = 1; round <= kMostSamplings; ++round) {
       result_.measures.rounds = round;
       if (Status status = sample_edges(); !status) return status.error();
-      if (Status status = mesh_faces(round == kMostSamplings); !status) return status.error();
+      if (Status status = mesh_faces(round); !status) return status.error();
       if (!is_too_coarse_) break;
     }
     if (Status status = weld(); !status) return status.error();
@@ -175,7 +176,7 @@ class Tessellation {
     }
   }
 
-  Status mesh_faces(bool is_last_round) {
+  Status mesh_faces(int round) {
     list_curved_faces();
     triangles_.assign(solid_.faces.size(), {});
     result_.left_out.clear();
@@ -197,11 +198,11 @@ class Tessellation {
         continue;
       }
       const bool has_crossing = !mesh->crossing.empty();
-      if (has_crossing ? is_last_round : mesh->triangles.empty()) {
+      if (has_crossing ? round == kMostSamplings : mesh->triangles.empty()) {
         result_.left_out.push_back({face.name, "its loops cross or touch on the surface"});
         continue;
       }
-      if (!is_last_round && (has_crossing || !mesh->coarse.empty())) {
+      if (has_crossing || (round <= kMostForDistance && !mesh->coarse.empty())) {
         for (const Index edge : has_crossing ? mesh->crossing : mesh->coarse) finer_[edge] *= 4;
         is_too_coarse_ = true;
         if (has_crossing) return Done{};

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "surfaces/face_loops.h"
+#include "surfaces/grid_lines.h"
 #include "surfaces/invert_point.h"
 #include "tessellate/trimmed/grid.h"
 #include "tessellate/trimmed/plane_predicates.h"
@@ -30,6 +32,7 @@ bool FaceNeighbours::share(Index a, Index b) const {
 namespace {
 
 constexpr int kMostRefinements = 12;  // of refining triangles that are too far from the surface
+constexpr int kMostSteps = 3;         // towards the nearest point of the surface
 constexpr std::size_t kMeasured = 4;  // parts of a side of a triangle between measured points
 constexpr double kClearance = 0.25;   // of a cell: how near a grid point may be to a loop
 constexpr double kChordErrors = 4;    // of a chord: how near a point inside may be to it
@@ -127,28 +130,9 @@ class FaceMesh {
 
   /// Lines so near to each other that a triangle within a cell is near enough to the surface.
   void make_grid() {
-    const SecondDerivatives bend = bends_.over(low_, high_);
-    const std::array<double, 2> size{high_[0] - low_[0], high_[1] - low_[1]};
-    std::array<double, 2> step = size;
-    const auto limit = [&](std::size_t axis, double second) {
-      if (second > 0) step[axis] = std::min(step[axis], std::sqrt(8 * chord_ / second));
-    };
-    // Each term of the error gets an equal share of the chord.
-    const double terms =
-        (bend.uu > 0 ? 1.0 : 0.0) + (bend.uv > 0 ? 1.0 : 0.0) + (bend.vv > 0 ? 1.0 : 0.0);
-    limit(0, terms * bend.uu);
-    limit(1, terms * bend.vv);
-    // The mixed derivative bounds the product: both steps shrink to the same length.
-    const double product = step[0] * step[1];
-    const double most_product = bend.uv > 0 ? 4 * chord_ / (terms * bend.uv) : product;
-    if (product > most_product) {
-      const double side = std::sqrt(most_product * scale_[0] * scale_[1]);
-      const double u = std::min(step[0], side / scale_[0]);
-      const double v = std::min(step[1], most_product / u);
-      step = {std::min(step[0], most_product / v), v};
-    }
-    grid_.us = lines(size[0], step[0], scale_[0]);
-    grid_.vs = lines(size[1], step[1], scale_[1]);
+    const GridLines lines = grid_lines(surface_, {low_, high_}, scale_, chord_, most_);
+    for (const double u : lines.us) grid_.us.push_back((u - low_[0]) * scale_[0]);
+    for (const double v : lines.vs) grid_.vs.push_back((v - low_[1]) * scale_[1]);
   }
 
   bool has_pole() const {
@@ -207,14 +191,6 @@ class FaceMesh {
       if (side > 0) is_odd = !is_odd;
     }
     return is_odd;
-  }
-
-  std::vector<double> lines(double size, double step, double scale) const {
-    std::vector<double> result;
-    if (!(size > 0) || !(step > 0)) return result;
-    const double count = std::min(std::ceil(size / step), static_cast<double>(most_));
-    for (double i = 1; i < count; ++i) result.push_back(size * scale * (i / count));
-    return result;
   }
 
   /// Triangulates with the points inside; one that no longer is inside, after rounding, goes.
@@ -367,8 +343,31 @@ class FaceMesh {
     return (bend.uu * u * u + 2 * bend.uv * u * v + bend.vv * v * v) / 8 > chord_;
   }
 
-  /// The bound allows for more than surfaces do: the largest distance between points spread over a
-  /// triangle and those of the surface with their coordinates.
+  /// How far a place is from the surface, or more: from the nearest of a few points of it, found by
+  /// steps of Gauss and Newton. Half of the chord is near enough.
+  double distance_from(Parameters at, const Vector3& place) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kMostSteps; ++step) {
+      const SurfacePoint point = point_at(surface_, at);
+      const Vector3 offset = place - point.place;
+      const double distance = length(offset);
+      if (!(distance < least)) break;
+      least = distance;
+      if (least <= chord_ / 2) break;
+      const double uu = dot(point.along_u, point.along_u);
+      const double uv = dot(point.along_u, point.along_v);
+      const double vv = dot(point.along_v, point.along_v);
+      const double determinant = uu * vv - uv * uv;
+      if (!(determinant > 0)) break;
+      const double u = dot(offset, point.along_u);
+      const double v = dot(offset, point.along_v);
+      at = {at[0] + (u * vv - v * uv) / determinant, at[1] + (v * uu - u * uv) / determinant};
+    }
+    return least;
+  }
+
+  /// The bound allows for more than surfaces do: the largest distance of points spread over a
+  /// triangle from the surface.
   double measured(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
     double most = 0;
     std::array<Parameters, 3> at;
@@ -389,7 +388,7 @@ class FaceMesh {
           place = {place[0] + weights[k] * at[k][0], place[1] + weights[k] * at[k][1]};
           flat = flat + corners[k] * weights[k];
         }
-        most = std::max(most, length(point_at(surface_, place).place - flat));
+        most = std::max(most, distance_from(place, flat));
       }
     }
     return most;
@@ -413,13 +412,14 @@ class FaceMesh {
     }
     result_.gap = loops_.gap;
     for (const Triangle& t : mesh.triangles) {
-      measure_error(mesh, t);
-      if (may_be_far(mesh, t) && measured(mesh, t) > chord_) add_coarse_edges(mesh, t);
       Triangle triangle{vertex[t[0]], vertex[t[1]], vertex[t[2]]};
       if (is_flipped) std::swap(triangle[1], triangle[2]);
       const bool is_collapsed =
           triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
-      if (!is_collapsed) result_.triangles.push_back(triangle);
+      if (is_collapsed) continue;
+      result_.triangles.push_back(triangle);
+      measure_error(mesh, t);
+      if (may_be_far(mesh, t) && measured(mesh, t) > chord_) add_coarse_edges(mesh, t);
     }
     std::sort(result_.coarse.begin(), result_.coarse.end());
     result_.coarse.erase(std::unique(result_.coarse.begin(), result_.coarse.end()),
@@ -439,7 +439,10 @@ class FaceMesh {
     const double size = length(normal);
     if (!(size > 0)) return;
     const Vector3 offset = point_at(surface_, centre).place - corners[0];
-    result_.chord_error = std::max(result_.chord_error, std::abs(dot(offset, normal)) / size);
+    double error = std::abs(dot(offset, normal)) / size;
+    // In a long triangle the point of the surface is not the nearest one.
+    if (error > chord_) error = measured(mesh, t);
+    result_.chord_error = std::max(result_.chord_error, error);
   }
 
   const Surface& surface_;

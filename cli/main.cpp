@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdio>
 #include <exception>
 #include <thread>
 
 #include "cli/arguments.h"
+#include "pipeline/pipeline.h"
 #include "repair/repair.h"
 
 namespace watertight::cli {
@@ -80,26 +80,13 @@ void add_chord(CLI::App& sub, double& chord) {
       ->capture_default_str();
 }
 
-/// The power of ten that a text is. Errors: a message.
-std::string read_power_of_ten(const std::string& text, std::optional<int>& exponent) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  constexpr std::array kPowers{1e-9, 1e-8, 1e-7, 1e-6, 1e-5,  1e-4,  1e-3,
-                               0.01, 0.1,  1.0,  10.0, 100.0, 1000.0};
-  const auto* const found = std::find(kPowers.begin(), kPowers.end(), number);
-  if (error != std::errc() || end != text.data() + text.size() || found == kPowers.end()) {
-    return "a power of ten from 1e-9 to 1000, not '" + text + "'";
-  }
-  exponent = static_cast<int>(found - kPowers.begin()) - 9;
-  return "";
-}
-
 void add_lattice(CLI::App& sub, std::optional<int>& exponent) {
   sub.add_option_function<std::string>(
          "--lattice",
          [&exponent](const std::string& text) {
-           const std::string problem = read_power_of_ten(text, exponent);
-           if (!problem.empty()) throw CLI::ValidationError("--lattice", problem);
+           const auto read = pipeline::lattice_exponent_of(text);
+           if (!read) throw CLI::ValidationError("--lattice", read.error().message);
+           exponent = *read;
          },
          "step of the lattice of vertices, metres, a power of ten; default: the largest that is "
          "not above a hundredth of the chord")

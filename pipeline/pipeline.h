@@ -86,6 +86,9 @@ Result<SurfaceRule> surface_rule_named(const std::string& name);
 /// How curved solids are read wherever they are judged or stored: one whose facets cross at this
 /// chord, in metres, is tessellated at a smaller one.
 formats::CurvedReading curved_reading(double chord = formats::kUsualChord);
+/// The exponent of a lattice whose step in metres is this text, a power of ten. Errors:
+/// invalid_argument.
+Result<int> lattice_exponent_of(std::string_view step);
 
 /// The options with what the reader of a solid noted about it. Keeps references to `submitted`.
 CertifyOptions options_for(const SubmittedSolid& submitted, const CertifyOptions& options);

@@ -120,6 +120,7 @@ Response get_report(const RoutedRequest& request);
 Response get_statistics(const RoutedRequest& request);
 Response post_validate(const RoutedRequest& request);
 Response post_convert(const RoutedRequest& request);
+Response post_tessellate(const RoutedRequest& request);
 Response post_repair(const RoutedRequest& request);
 Response post_encode(const RoutedRequest& request);
 Response post_decode(const RoutedRequest& request);

@@ -140,6 +140,7 @@ const std::vector<Route>& general_routes() {
        post_validate,
        {std::begin(kValidateParameters), std::end(kValidateParameters)}},
       {"POST", "/convert", computing, read, post_convert, {"f", "to", "surfaces", "chord"}},
+      {"POST", "/tessellate", computing, read, post_tessellate, {"f", "to", "chord", "lattice"}},
       {"POST",
        "/repair",
        computing,

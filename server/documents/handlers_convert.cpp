@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Handlers that return the document of the body in another form: POST /convert, /repair, /encode,
-// /decode.
+// Handlers that return the document of the body in another form: POST /convert, /tessellate,
+// /repair, /encode, /decode.
 #include <array>
 #include <optional>
 
@@ -95,7 +95,7 @@ Result<Document> only_document(const RoutedRequest& request) {
                                            " documents; `watertight decode` writes each"};
 }
 
-/// The kind of report that a client wants to have of a repair; nothing if it wants the document.
+/// The kind of report that a client wants to have instead of the document; nothing if it wants the document.
 std::optional<ReportForm> wanted_report(const RoutedRequest& request) {
   if (const std::string* named = request.target.parameter("to")) {
     if (*named == "report") return ReportForm::json;
@@ -138,6 +138,21 @@ Response post_convert(const RoutedRequest& request) {
   return converted(*conversion.document, *wanted);
 }
 
+Response post_tessellate(const RoutedRequest& request) {
+  const auto report = wanted_report(request);
+  const auto wanted = report ? std::optional(kWritten[0]) : wanted_format(request);
+  if (!wanted) return refuse_written_formats();
+  Conversion conversion = read_conversion(request, wanted->format, formats::Surfaces::ignore);
+  if (conversion.problem) return to_response(*conversion.problem);
+  if (!report) return converted(*conversion.document, *wanted);
+  const pipeline::IngestOptions options = ingest_options(request.service, request.is_cancelled);
+  ReportAnswer answer(request.service, *report, options, "ignore");
+  auto reader = formats::FeatureReader::of(*std::move(conversion.document));
+  const Status judged = answer.judge(reader, "request body");
+  if (!judged) return to_response(problem_of_body(judged.error()));
+  return std::move(answer).finish();
+}
+
 Response post_repair(const RoutedRequest& request) {
   auto report = wanted_report(request);
   auto wanted = report ? std::optional(kWritten[0]) : wanted_format(request);
@@ -159,9 +174,12 @@ Response post_repair(const RoutedRequest& request) {
   if (to == Format::gml && body.format != Format::gml) {
     return refuse(406, "not-acceptable", "only GML is written as GML");
   }
+  formats::ReadOptions reading;
+  reading.limits = request.service.options.limits;
+  reading.curved = pipeline::curved_reading();
   const auto threads = static_cast<unsigned>(request.service.options.threads_per_request);
   const auto repaired = pipeline::repair_text(as_bytes(request.request.body), body.format, to,
-                                              {request.service.options.limits},
+                                              reading,
                                               request.service.workers, *rules.repair, threads);
   if (request.is_cancelled && request.is_cancelled()) return to_response(to_problem(cancelled()));
   if (!repaired) return to_response(problem_of_body(repaired.error()));

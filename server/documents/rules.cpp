@@ -26,15 +26,19 @@ Result<formats::Surfaces> stored_surfaces(const Target& target) {
                "surfaces is ignore or as-solids where they are stored"};
 }
 
-Result<double> chord_of(const Target& target) {
+Result<formats::CurvedReading> curved_reading_of(const Target& target) {
   constexpr double kMostChord = 1000;
-  double chord = formats::kUsualChord;
-  const std::string* text = target.parameter("chord");
-  if (text == nullptr) return chord;
-  if (Status read = pipeline::read_number("chord", *text, false, kMostChord, chord); !read) {
-    return read.error();
+  formats::CurvedReading reading = pipeline::curved_reading();
+  if (const std::string* text = target.parameter("chord")) {
+    const Status read = pipeline::read_number("chord", *text, false, kMostChord, reading.chord);
+    if (!read) return read.error();
   }
-  return chord;
+  if (const std::string* text = target.parameter("lattice")) {
+    const auto exponent = pipeline::lattice_exponent_of(*text);
+    if (!exponent) return exponent.error();
+    reading.lattice_exponent = *exponent;
+  }
+  return reading;
 }
 
 Status read_rules(const Target& target, pipeline::IngestOptions& options) {

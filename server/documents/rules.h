@@ -34,9 +34,8 @@ Status read_remedies(const Target& target, std::string_view list, repair::Repair
 /// invalid_argument.
 Result<formats::Surfaces> stored_surfaces(const Target& target);
 
-/// How far the triangles of curved solids may be from their surfaces, metres. Errors:
-/// invalid_argument.
-Result<double> chord_of(const Target& target);
+/// How curved solids become polyhedra: chord, lattice. Errors: invalid_argument.
+Result<formats::CurvedReading> curved_reading_of(const Target& target);
 
 /// The rule for surfaces that are judged; its name is "" for the default.
 struct JudgedSurfaces : pipeline::SurfaceRule {

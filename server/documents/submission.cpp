@@ -276,12 +276,12 @@ Submission read_submission(const RoutedRequest& request, AcceptedFormats accepte
   const bool is_stored = accepted == AcceptedFormats::with_ids;
   options.keep_text = is_stored || surfaces != formats::Surfaces::as_solids;
   options.surfaces = surfaces;
-  const auto chord = chord_of(request.target);
-  if (!chord) {
-    submission.problem = to_problem(chord.error());
+  const auto curved = curved_reading_of(request.target);
+  if (!curved) {
+    submission.problem = to_problem(curved.error());
     return submission;
   }
-  options.curved = pipeline::curved_reading(*chord);
+  options.curved = *curved;
   format = format_of_content(*format, body);
   const bool is_sequence_body = *format == Format::city_json_seq;
   submission.problem =
@@ -325,12 +325,12 @@ Conversion read_conversion(const RoutedRequest& request, std::optional<Format> t
   options.split_features = false;
   options.surfaces = surfaces;
   options.keep_text = !to;
-  const auto chord = chord_of(request.target);
-  if (!chord) {
-    conversion.problem = to_problem(chord.error());
+  const auto curved = curved_reading_of(request.target);
+  if (!curved) {
+    conversion.problem = to_problem(curved.error());
     return conversion;
   }
-  options.curved = pipeline::curved_reading(*chord);
+  options.curved = *curved;
   const ByteView bytes = as_bytes(request.request.body);
   auto document = to ? pipeline::read_to_convert(bytes, body.format, *to, options)
                      : formats::read_document(bytes, body.format, options);

@@ -225,6 +225,12 @@ CREATE FUNCTION wt_repair_report(ewkb bytea, remedies text DEFAULT 'rings,orient
 COMMENT ON FUNCTION wt_repair_report(bytea, text, float8) IS
   'what wt_repair does to a solid (EWKB): outcome, remedies, counts of changes, holes';
 
+-- Curved solids.
+CREATE FUNCTION wt_tessellate(brep jsonb, chord float8 DEFAULT 0.01) RETURNS bytea
+  AS 'MODULE_PATHNAME', 'wt_tessellate' LANGUAGE C IMMUTABLE STRICT PARALLEL SAFE COST 50000;
+COMMENT ON FUNCTION wt_tessellate(jsonb, float8) IS
+  'a valid polyhedron (EWKB) of one curved solid, given by its vertices, edges and faces (a boundary representation in JSON); its triangles are at most chord metres off the curved faces';
+
 -- Findings as rows. The bodies are parsed here, so that they work in any schema and under any search path.
 CREATE TYPE wt_finding AS (code integer, name text, severity text, shell integer, facet integer, other_facet integer,
   witness float8[], measured float8, "limit" float8, unit text, message text);

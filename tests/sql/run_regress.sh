@@ -9,7 +9,7 @@ set -euo pipefail
 source=$(cd "$1" && pwd)
 build=$(cd "$2" && pwd)
 program=${3:-}
-tests=(city functions encode repairs hostile helpers limits rules solid solid_index solid_pairs)
+tests=(city functions encode repairs curved hostile helpers limits rules solid solid_index solid_pairs)
 
 folder=$(mktemp -d /tmp/watertight-sql-XXXXXX)
 started=no

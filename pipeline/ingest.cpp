@@ -239,15 +239,15 @@ formats::CurvedReading curved_reading(double chord) {
 }
 
 Result<int> lattice_exponent_of(std::string_view step) {
-  constexpr std::array kSteps{1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4,  1e-3,
+  constexpr std::array kSteps{1e-9, 1e-8, 1e-7, 1e-6, 1e-5,  1e-4,  1e-3,
                               0.01, 0.1,  1.0,  10.0, 100.0, 1000.0};
   double metres = 0;
   const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), metres);
   const auto* const found = std::find(kSteps.begin(), kSteps.end(), metres);
   if (error != std::errc() || end != step.data() + step.size() || found == kSteps.end()) {
-    return Error{ErrorCode::invalid_argument,
-                 "the lattice is a power of ten from 1e-9 to 1000 metres, not '" +
-                     std::string(step) + "'"};
+    return Error{
+        ErrorCode::invalid_argument,
+        "the lattice is a power of ten from 1e-9 to 1000 metres, not '" + std::string(step) + "'"};
   }
   return static_cast<int>(found - kSteps.begin()) - 9;
 }

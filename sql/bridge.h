@@ -108,8 +108,8 @@ void wt_bridge_repair(const wt_job* job, const wt_repair_choice* choice,
 /** Answers EWKB with what a repair does, as JSON (repair/summary_json.h). */
 void wt_bridge_repair_report(const wt_job* job, const wt_repair_choice* choice,
                              wt_reply* reply) WATERTIGHT_NOEXCEPT;
-/** Answers a boundary representation of one solid in JSON, UTF-8 (docs/formats.md), with the EWKB of
- *  a valid polyhedron that is nowhere farther than `chord` metres from it. A face that cannot be
+/** Answers a boundary representation of one solid in JSON, UTF-8 (docs/formats.md), with the EWKB
+ * of a valid polyhedron that is nowhere farther than `chord` metres from it. A face that cannot be
  *  tessellated fails with 0A000; an invalid polyhedron with 22023, its findings are the detail. */
 void wt_bridge_tessellate(const wt_job* job, double chord, wt_reply* reply) WATERTIGHT_NOEXCEPT;
 /** Answers EWKB with a blob, which states the rules. An invalid solid fails with 22023; its

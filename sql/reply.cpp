@@ -69,8 +69,12 @@ void fail(wt_reply* reply, const Error& error) {
       state = "22023";  // invalid_parameter_value
       break;
   }
-  const std::string detail =
-      error.byte_offset ? "At byte " + std::to_string(*error.byte_offset) + "." : std::string();
+  std::string detail;
+  if (error.byte_offset) {
+    detail = "At byte " + std::to_string(*error.byte_offset) + ".";
+  } else if (!error.pointer.empty()) {
+    detail = "At " + error.pointer + ".";
+  }
   fail(reply, state, error.message, detail);
 }
 

@@ -31,8 +31,8 @@ std::vector<double> cell_ends(const Surface& surface, std::size_t axis, const Pa
   }
   ends.push_back(box.high[axis]);
   const std::size_t pieces = ends.size() - 1;
-  const std::size_t parts = std::clamp((kFewestCells + pieces - 1) / pieces, std::size_t{1},
-                                       kMostCells);
+  const std::size_t parts =
+      std::clamp((kFewestCells + pieces - 1) / pieces, std::size_t{1}, kMostCells);
   std::vector<double> all{ends.front()};
   for (std::size_t i = 0; i < pieces; ++i) {
     for (std::size_t part = 1; part <= parts; ++part) {

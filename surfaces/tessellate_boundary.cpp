@@ -13,7 +13,7 @@
 namespace watertight::surfaces {
 namespace {
 
-constexpr int kMostSamplings = 8;  // of sampling edges whose chords cross
+constexpr int kMostSamplings = 8;    // of sampling edges whose chords cross
 constexpr int kMostForDistance = 2;  // of sampling edges because triangles beside them are far off
 constexpr double kLatticeShare = 0.01;
 constexpr double kEdgeShare =

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMostHalvings = 4;  // of the chord of a solid whose facets cross
 /// A solid whose facets cross at every chord must not cost many times as much as others.
-constexpr std::size_t kMostTrialTriangles = 100'000;
+constexpr std::size_t kMostTrialTriangles = 20'000;
 
 void move_boundary(const surfaces::Affine& placement, surfaces::BoundaryRepresentation& boundary) {
   for (surfaces::Vector3& vertex : boundary.vertices) vertex = moved(placement, vertex);

@@ -95,7 +95,8 @@ Result<Document> only_document(const RoutedRequest& request) {
                                            " documents; `watertight decode` writes each"};
 }
 
-/// The kind of report that a client wants to have instead of the document; nothing if it wants the document.
+/// The kind of report that a client wants to have instead of the document; nothing if it wants the
+/// document.
 std::optional<ReportForm> wanted_report(const RoutedRequest& request) {
   if (const std::string* named = request.target.parameter("to")) {
     if (*named == "report") return ReportForm::json;
@@ -178,9 +179,9 @@ Response post_repair(const RoutedRequest& request) {
   reading.limits = request.service.options.limits;
   reading.curved = pipeline::curved_reading();
   const auto threads = static_cast<unsigned>(request.service.options.threads_per_request);
-  const auto repaired = pipeline::repair_text(as_bytes(request.request.body), body.format, to,
-                                              reading,
-                                              request.service.workers, *rules.repair, threads);
+  const auto repaired =
+      pipeline::repair_text(as_bytes(request.request.body), body.format, to, reading,
+                            request.service.workers, *rules.repair, threads);
   if (request.is_cancelled && request.is_cancelled()) return to_response(to_problem(cancelled()));
   if (!repaired) return to_response(problem_of_body(repaired.error()));
   const auto& [document, outcome] = *repaired;

@@ -109,8 +109,8 @@ TEST_CASE("every route but the probes needs a key, and every change more than to
     const bool is_probe =
         route.path == "/healthz" || route.path == "/readyz" || route.path == "/web/{file}";
     CHECK((route.scope == Scope::none) == is_probe);
-    const std::set<std::string_view> computing{"/validate", "/convert", "/tessellate", "/repair", "/encode",
-                                               "/decode"};
+    const std::set<std::string_view> computing{"/validate", "/convert", "/tessellate",
+                                               "/repair",   "/encode",  "/decode"};
     const bool changes = route.method != "GET" && !computing.contains(route.path);
     CHECK((route.scope >= Scope::write) == changes);
   }

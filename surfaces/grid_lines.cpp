@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kFewestCells = 16;  // along u and along v, of few pieces
 constexpr std::size_t kMostCells = 4;     // of a piece, along u and along v, of the surface
 constexpr double kMostAspect = 8;         // of a cell
+constexpr double kGridShare = 0.8;        // of the chord: the rest is for triangles across cells
 constexpr double kNegligible = 0.01;      // of the chord
 constexpr double kLeastCell = 1e-6;       // of the box
 
@@ -120,7 +121,7 @@ GridLines grid_lines(const Surface& surface, const ParameterBox& box, const Para
   const double terms = (largest.uu * size[0] * size[0] / 8 > least ? 1.0 : 0.0) +
                        (has_twist ? 1.0 : 0.0) +
                        (largest.vv * size[1] * size[1] / 8 > least ? 1.0 : 0.0);
-  const double share = chord / std::max(terms, 1.0);
+  const double share = kGridShare * chord / std::max(terms, 1.0);
   const auto step_for = [&](double bend, std::size_t axis) {
     return bend > 0 ? std::min(size[axis], std::sqrt(8 * share / bend)) : size[axis];
   };

@@ -34,6 +34,7 @@ namespace {
 constexpr int kMostRefinements = 12;  // of refining triangles that are too far from the surface
 constexpr int kMostSteps = 3;         // towards the nearest point of the surface
 constexpr std::size_t kMeasured = 4;  // parts of a side of a triangle between measured points
+constexpr double kFarEnough = 0.9;    // of the chord: how far measured points may be from a surface
 constexpr double kClearance = 0.25;   // of a cell: how near a grid point may be to a loop
 constexpr double kChordErrors = 4;    // of a chord: how near a point inside may be to it
 constexpr std::size_t kScaleNet = 4;  // points along u and v at which lengths are compared
@@ -236,7 +237,7 @@ class FaceMesh {
     const std::size_t before = inner_.size();
     for (const Triangle& triangle : mesh.triangles) {
       split_shared_sides(mesh, triangle);
-      if (!may_be_far(mesh, triangle) || measured(mesh, triangle) <= chord_ / 2) continue;
+      if (!may_be_far(mesh, triangle) || measured(mesh, triangle) <= kFarEnough * chord_) continue;
       const Point wanted = divided_at(mesh, triangle);
       if (!is_beside_border(wanted)) inner_.push_back(wanted);
     }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "tessellate/trimmed/neighbours.h"
 #include "tessellate/trimmed/plane_predicates.h"
@@ -26,15 +27,10 @@ bool is_delaunay(std::span<const Point> points, const std::array<Index, 4>& quad
   return before(a, b) ? (before(a, d) || before(c, d)) : (before(c, b) && before(c, d));
 }
 
-void flip_to_delaunay(std::span<const Point> points, std::vector<Triangle>& triangles) {
-  std::vector<std::uint32_t> twins = twins_of(triangles, points.size());
-  std::vector<std::uint32_t> waiting;
+void restore_delaunay(std::span<const Point> points, std::span<Triangle> triangles,
+                      std::span<std::uint32_t> twins, std::vector<std::uint32_t> waiting) {
   std::vector<bool> waits(twins.size(), false);
-  for (std::uint32_t edge = 0; edge < twins.size(); ++edge) {
-    if (twins[edge] == kNone || twins[edge] < edge) continue;
-    waiting.push_back(edge);
-    waits[edge] = true;
-  }
+  for (const std::uint32_t edge : waiting) waits[edge] = true;
   const std::size_t most = kMostFlips * triangles.size();
   for (std::size_t flips = 0; !waiting.empty() && flips < most;) {
     const std::uint32_t edge = waiting.back();
@@ -51,6 +47,15 @@ void flip_to_delaunay(std::span<const Point> points, std::vector<Triangle>& tria
       waits[side] = true;
     }
   }
+}
+
+void flip_to_delaunay(std::span<const Point> points, std::vector<Triangle>& triangles) {
+  std::vector<std::uint32_t> twins = twins_of(triangles, points.size());
+  std::vector<std::uint32_t> waiting;
+  for (std::uint32_t edge = 0; edge < twins.size(); ++edge) {
+    if (twins[edge] != kNone && twins[edge] > edge) waiting.push_back(edge);
+  }
+  restore_delaunay(points, triangles, twins, std::move(waiting));
 }
 
 }  // namespace watertight::tessellate

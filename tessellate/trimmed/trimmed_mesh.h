@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A triangulated region that follows changes of its loops and of its grid. For surfaces/.
+// A triangulated region that follows changes of its loops and of its grid.
 //
 // Based on: the section "Updates" of the paper on incremental triangulation of trimmed Bezier
 // surfaces (region.h). Departure: triangles are kept instead of strips. A change deletes those that

@@ -351,8 +351,9 @@ void Jobs::finish(Record& record, Job job) {
     log_("event=job-not-saved id=" + job.id + " error=\"" + to_string(saved.error()) + "\"");
   }
   folder.remove_document();
-  publish(record, job);
+  // First counted, then shown: who reads that a job is over also reads it in the metrics.
   if (service_.metrics != nullptr) service_.metrics->count_job(to_string(job.state));
+  publish(record, job);
   log_("event=job id=" + job.id + " status=" + std::string(to_string(job.state)) + " stored=" +
        std::to_string(job.counts.stored) + " ms=" + std::to_string(job.finished - job.started));
 }

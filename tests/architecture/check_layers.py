@@ -34,7 +34,7 @@ import subprocess
 import sys
 import tempfile
 
-FOLDERS = ["base", "workers", "geometry", "tessellate", "surfaces", "delaunay", "validate", "fill", "repair", "codec",
+FOLDERS = ["base", "workers", "geometry", "tessellate", "surfaces", "delaunay", "validate", "fill", "spline", "repair", "codec",
            "columns", "archives", "projection", "tiles", "formats", "packing", "store", "cql2", "pipeline", "geopackage", "files", "report", "web", "server", "cli", "sql"]
 MAX_LINES = 600
 MAX_SOURCES = 20
@@ -52,7 +52,8 @@ HOMES = [
     (r"nlohmann/", "nlohmann-json",
      [r"formats/", r"tiles/", r"cql2/", r"geopackage/", r"server/", r"cli/", r"validate/report_json", r"report/stored_findings", r"tests/", r"bench/"]),
     (r"CGAL/", "CGAL",
-     [r"geometry/", r"tessellate/", r"delaunay/", r"tests/", r"bench/"]),
+     [r"geometry/", r"tessellate/", r"delaunay/", r"spline/", r"tests/", r"bench/"]),
+    (r"Eigen/", "Eigen", [r"spline/", r"tests/unit/spline/", r"bench/"]),
     (r"tetgen\.h", "TetGen", [r"delaunay/", r"bench/"]),
     (r"CLI/", "CLI11", [r"cli/", r"bench/"]),
     (r"lzma\.h", "liblzma", [r"columns/"]),

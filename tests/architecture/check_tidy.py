@@ -24,7 +24,7 @@ import subprocess
 import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
-FOLDERS = ("base", "workers", "geometry", "tessellate", "surfaces", "delaunay", "validate", "fill", "repair", "codec",
+FOLDERS = ("base", "workers", "geometry", "tessellate", "surfaces", "delaunay", "validate", "fill", "spline", "repair", "codec",
            "columns", "archives", "formats", "packing", "store", "cql2", "pipeline", "geopackage", "files", "report", "server", "cli", "sql")
 BATCH = 12  # as CMAKE_UNITY_BUILD_BATCH_SIZE
 TOO_HEAVY = ("CGAL/", "boost/", "tetgen.h")

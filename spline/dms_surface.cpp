@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spline/dms_surface.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace watertight::spline {
+namespace {
+
+void add(Point& sum, double factor, const Point& coefficient) {
+  sum.x += factor * coefficient.x;
+  sum.y += factor * coefficient.y;
+  sum.z += factor * coefficient.z;
+}
+
+Point combined(std::span<const Point> points, std::span<const double> factors) {
+  Point sum;
+  for (std::size_t i = 0; i < points.size(); ++i) add(sum, factors[i], points[i]);
+  return sum;
+}
+
+}  // namespace
+
+BasisEvaluator::BasisEvaluator(const DmsDomain& domain)
+    : domain_(domain), splines_(domain.table_.size()) {}
+
+/// The recursion of the paper's equation 1. Each part is computed once a point: functions share
+/// most.
+template <class IsIn>
+double BasisEvaluator::spline(Index number, const Point& u, const IsIn& is_in) {
+  const SplitSpline& spline = domain_.table_[number];
+  if (!spline.rectangle.has(u)) return 0;
+  Known& known = splines_[number];
+  if (known.point == point_) return known.value;
+  const auto& [a, b, c] = spline.corners;
+  double value = 0;
+  if (spline.is_leaf()) {
+    if (is_in(spline.corners)) value = 1 / spline.doubled_area;
+  } else {
+    const std::array<double, 3> lower{this->spline(spline.lower[0], u, is_in),
+                                      this->spline(spline.lower[1], u, is_in),
+                                      this->spline(spline.lower[2], u, is_in)};
+    if (lower != std::array<double, 3>{}) {
+      value = (twice_area(u, b, c) * lower[0] + twice_area(u, c, a) * lower[1] +
+               twice_area(u, a, b) * lower[2]) /
+              spline.doubled_area;
+    }
+  }
+  known = {point_, value};
+  return value;
+}
+
+template <class IsIn>
+void BasisEvaluator::add_derivatives(const SplitSpline& top, double scale, int order,
+                                     const Point& u, const IsIn& is_in, BasisValue& value) {
+  const auto outer = barycentric_gradients(top.corners, top.doubled_area);
+  const int degree = domain_.degree();
+  for (std::size_t j = 0; j < 3; ++j) {
+    const double factor = degree * scale;
+    const double lower = spline(top.lower[j], u, is_in);
+    value.first[0] += factor * outer[j].x * lower;
+    value.first[1] += factor * outer[j].y * lower;
+    const SplitSpline& middle = domain_.table_[top.lower[j]];
+    if (order < 2 || middle.is_leaf()) continue;
+    const auto inner = barycentric_gradients(middle.corners, middle.doubled_area);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double part = factor * (degree - 1) * spline(middle.lower[k], u, is_in);
+      value.second[0] += part * outer[j].x * inner[k].x;
+      value.second[1] += part * (outer[j].x * inner[k].y + outer[j].y * inner[k].x) / 2;
+      value.second[2] += part * outer[j].y * inner[k].y;
+    }
+  }
+}
+
+template <class IsIn>
+std::span<const BasisValue> BasisEvaluator::compute(Index triangle, const Point& u, int order,
+                                                    const IsIn& is_in) {
+  ++point_;
+  found_.clear();
+  for (const Index function : domain_.functions_at(triangle)) {
+    const Index top = domain_.tops_[function];
+    if (!domain_.table_[top].rectangle.has(u)) continue;
+    const double scale = domain_.scales_[function];
+    BasisValue value{function, scale * spline(top, u, is_in), {}, {}};
+    if (order > 0) add_derivatives(domain_.table_[top], scale, order, u, is_in, value);
+    const bool is_zero = value.value == 0 && value.first == std::array<double, 2>{} &&
+                         value.second == std::array<double, 3>{};
+    if (!is_zero) found_.push_back(value);
+  }
+  return found_;
+}
+
+std::optional<std::span<const BasisValue>> BasisEvaluator::at(const Point& u, int order) {
+  const std::optional<PlaceInDomain> place = domain_.place_of(u);
+  if (!place) return std::nullopt;
+  if (place->is_on_border) return in_triangle(place->triangle, u, order);
+  return compute(place->triangle, u, order, [&](const std::array<Point, 3>& corners) {
+    return is_in_triangle(corners[0], corners[1], corners[2], u);
+  });
+}
+
+std::span<const BasisValue> BasisEvaluator::in_triangle(Index triangle, const Point& u, int order) {
+  Point center;
+  for (const Index corner : domain_.arrays().triangles[triangle]) {
+    center.x += domain_.knot(corner, 0).x / 3;
+    center.y += domain_.knot(corner, 0).y / 3;
+  }
+  return compute(triangle, u, order, [&](const std::array<Point, 3>& corners) {
+    return is_in_triangle_from(corners[0], corners[1], corners[2], u, center);
+  });
+}
+
+SurfacePoint sum_of(std::span<const BasisValue> functions, std::span<const Point> coefficients) {
+  SurfacePoint sum;
+  for (const BasisValue& function : functions) {
+    const Point& coefficient = coefficients[function.function];
+    add(sum.value, function.value, coefficient);
+    for (std::size_t i = 0; i < 2; ++i) add(sum.first[i], function.first[i], coefficient);
+    for (std::size_t i = 0; i < 3; ++i) add(sum.second[i], function.second[i], coefficient);
+  }
+  return sum;
+}
+
+Result<DmsSurface> DmsSurface::make(const DmsDomain& domain, std::vector<Point> coefficients) {
+  if (coefficients.size() != domain.function_count()) {
+    return Error{ErrorCode::malformed, std::to_string(coefficients.size()) + " coefficients for " +
+                                           std::to_string(domain.function_count()) + " functions"};
+  }
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const Point& c = coefficients[i];
+    if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z)) {
+      return Error{ErrorCode::malformed, "coefficient " + std::to_string(i) + " is not finite"};
+    }
+  }
+  return DmsSurface(domain, std::move(coefficients));
+}
+
+std::vector<std::optional<SurfacePoint>> DmsSurface::values(std::span<const Point> us,
+                                                            int order) const {
+  std::vector<std::optional<SurfacePoint>> found;
+  found.reserve(us.size());
+  BasisEvaluator evaluator(*domain_);
+  for (const Point& u : us) {
+    const auto functions = evaluator.at(u, order);
+    found.push_back(functions ? std::optional(sum_of(*functions, coefficients_)) : std::nullopt);
+  }
+  return found;
+}
+
+std::optional<Point> DmsSurface::value(const Point& u) const {
+  const auto found = values({&u, 1}).front();
+  return found ? std::optional(found->value) : std::nullopt;
+}
+
+std::optional<Point> DmsSurface::derivative(const Point& u, const Point& direction) const {
+  const auto found = values({&u, 1}, 1).front();
+  if (!found) return std::nullopt;
+  return combined(found->first, std::array{direction.x, direction.y});
+}
+
+std::optional<Point> DmsSurface::second_derivative(const Point& u, const Point& first,
+                                                   const Point& second) const {
+  const auto found = values({&u, 1}, 2).front();
+  if (!found) return std::nullopt;
+  return combined(
+      found->second,
+      std::array{first.x * second.x, first.x * second.y + first.y * second.x, first.y * second.y});
+}
+
+}  // namespace watertight::spline

@@ -12,6 +12,8 @@ void print_blob_hashes();
 bool print_meshes();
 /// Prints checksums of the fillings of random holes.
 bool print_fillings();
+/// Prints checksums of filled holes in surfaces over triangulations.
+bool print_splines();
 /// Prints the verdict and the hashes of report and blob of every solid of the documents.
 bool print_documents(std::span<char* const> files);
 /// Starts a server and lets clients come and go. Prints nothing.

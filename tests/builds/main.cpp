@@ -12,6 +12,6 @@ int main(int count, char** arguments) {
 #endif
   print_blob_hashes();
   const bool is_good =
-      print_meshes() && print_fillings() && print_documents({arguments + 1, static_cast<std::size_t>(count - 1)});
+      print_meshes() && print_fillings() && print_splines() && print_documents({arguments + 1, static_cast<std::size_t>(count - 1)});
   return is_good ? 0 : 1;
 }

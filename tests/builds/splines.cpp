@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Prints checksums of filled holes in surfaces over triangulations, whose knots, triangles and
+// coefficients depend on every rounding.
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/checksum.h"
+#include "spline/dms_surface.h"
+#include "spline/extend_triangulation.h"
+#include "spline/knot_clouds.h"
+#include "spline/spline_json.h"
+#include "spline/thin_plate.h"
+#include "tests/builds/fingerprint.h"
+#include "tests/random.h"
+
+namespace watertight::builds {
+namespace {
+
+/// The border of a square of so many edges a side, a little out of line.
+std::vector<Point> square(int edges, double low, double high, test::Random& random) {
+  std::vector<Point> polygon;
+  for (int side = 0; side < 4; ++side) {
+    for (int i = 0; i < edges; ++i) {
+      const double along = low + (high - low) * i / edges;
+      const double off = random.within(-100, 100) / 4096;
+      const double back = low + high - along;
+      const Point corners[] = {{along, low + off, 0}, {high + off, along, 0}, {back, high + off, 0}, {low + off, back, 0}};
+      polygon.push_back(corners[side]);
+    }
+  }
+  return polygon;
+}
+
+/// The JSON of a surface between two squares whose inside is filled; empty after an error.
+std::string filled_surface(std::uint64_t seed) {
+  test::Random random(seed);
+  constexpr int kEdges = 3;
+  const std::vector<Point> outer = square(2 * kEdges, -2, 2, random);
+  const std::vector<Point> inner = square(kEdges, -1, 1, random);
+  const std::vector<std::vector<Point>> ring{outer, inner};
+  auto mesh = spline::extend_triangulation(ring);
+  const std::vector<std::vector<Point>> hole{inner};
+  const auto inside = spline::extend_triangulation(hole, {.density = 0.8});
+  if (!mesh || !inside) return {};
+  const auto fixed = spline::make_clouds(mesh->vertices, mesh->triangles);
+  if (!fixed) return {};
+  std::vector<Index> filled;
+  const auto before = static_cast<Index>(mesh->vertices.size());
+  const auto border = static_cast<Index>(inner.size());
+  for (const Triangle& t : inside->triangles) {
+    filled.push_back(static_cast<Index>(mesh->triangles.size()));
+    Triangle& own = mesh->triangles.emplace_back();
+    for (std::size_t j = 0; j < 3; ++j) own[j] = t[j] < border ? static_cast<Index>(outer.size()) + t[j] : before + t[j] - border;
+  }
+  mesh->vertices.insert(mesh->vertices.end(), inside->vertices.begin() + border, inside->vertices.end());
+  auto vertices = spline::move_off_lines(mesh->vertices, mesh->triangles, *fixed);
+  if (!vertices) return {};
+  auto clouds = spline::make_clouds(*vertices, mesh->triangles, *fixed);
+  if (!clouds) return {};
+  const auto domain = spline::DmsDomain::make({2, std::move(*vertices), std::move(*clouds), mesh->triangles});
+  if (!domain) return {};
+  std::vector<Point> coefficients;
+  for (std::size_t f = 0; f < domain->function_count(); ++f) {
+    const double x = random.within(-1000, 1000);
+    coefficients.push_back({x, random.within(-1000, 1000), random.within(-1000, 1000)});
+  }
+  auto plate = spline::least_thin_plate(*domain, filled, coefficients);
+  if (!plate) return {};
+  const auto surface = spline::DmsSurface::make(*domain, std::move(plate->coefficients));
+  return surface ? spline::to_json(*surface) : std::string();
+}
+
+}  // namespace
+
+bool print_splines() {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const std::string json = filled_surface(seed);
+    if (json.empty()) return false;
+    std::printf("spline %u %08x\n", static_cast<unsigned>(seed),
+                crc32c({reinterpret_cast<const std::uint8_t*>(json.data()), json.size()}));
+  }
+  return true;
+}
+
+}  // namespace watertight::builds

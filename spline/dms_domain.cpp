@@ -8,6 +8,7 @@
 
 #include "geometry/predicates/turn.h"
 #include "spline/plane/proper_triangulation.h"
+#include "spline/plane/triangle_parts.h"
 
 namespace watertight::spline {
 namespace {
@@ -78,6 +79,7 @@ Result<DmsDomain> DmsDomain::make(DomainArrays arrays) {
   if (Status checked = domain.check_functions(); !checked) return checked.error();
   domain.split_functions();
   domain.list_functions();
+  domain.plan_parts();
   return domain;
 }
 
@@ -175,6 +177,47 @@ void DmsDomain::list_functions() {
 std::span<const Index> DmsDomain::functions_at(Index triangle) const {
   return std::span(functions_)
       .subspan(starts_[triangle], starts_[triangle + 1] - starts_[triangle]);
+}
+
+/// The splines of functions and all that they consist of. Parts of splines have smaller numbers, so
+/// they come first.
+std::vector<Index> DmsDomain::splines_of(std::span<const Index> functions) const {
+  std::vector<Index> splines;
+  for (const Index function : functions) splines.push_back(tops_[function]);
+  for (std::size_t next = 0; next < splines.size(); ++next) {  // grows
+    const SplitSpline& spline = table_[splines[next]];
+    if (!spline.is_leaf()) splines.insert(splines.end(), spline.lower.begin(), spline.lower.end());
+  }
+  std::ranges::sort(splines);
+  splines.erase(std::unique(splines.begin(), splines.end()), splines.end());
+  return splines;
+}
+
+/// Most functions of a triangle are 0 but near one of its corners, where the knots are.
+void DmsDomain::plan_parts() {
+  for (Index t = 0; t < arrays_.triangles.size(); ++t) {
+    const std::span<const Index> functions = functions_at(t);
+    const std::vector<Index> splines = splines_of(functions);
+    std::vector<std::vector<Point>> knots;
+    for (const Index function : functions) knots.push_back(knots_of(function));
+    for (std::size_t part = 0; part < kParts; ++part) {
+      plans_.push_back({planned_functions_.size(), planned_splines_.size()});
+      const std::array<Point, 3> corners = part_corners(corners_at(arrays_, t), part);
+      const Rectangle around = Rectangle::around(corners);
+      for (std::size_t i = 0; i < functions.size(); ++i) {
+        const bool is_near = table_[tops_[functions[i]]].rectangle.meets(around);
+        if (is_near && !is_beyond_an_edge(knots[i], corners))
+          planned_functions_.push_back(functions[i]);
+      }
+      for (const Index number : splines) {
+        const SplitSpline& spline = table_[number];
+        const bool is_near = spline.rectangle.meets(around);
+        if (is_near && !(spline.is_leaf() && is_beyond_an_edge(spline.corners, corners)))
+          planned_splines_.push_back(number);
+      }
+    }
+  }
+  plans_.push_back({planned_functions_.size(), planned_splines_.size()});
 }
 
 std::optional<PlaceInDomain> DmsDomain::place_of(const Point& u) const {

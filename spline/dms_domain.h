@@ -57,7 +57,7 @@ class DmsDomain {
   /// are near each other.
   static Result<DmsDomain> make(DomainArrays arrays);
 
-  static constexpr std::size_t kMostTriangles = 1'000'000;
+  static constexpr std::size_t kMostTriangles = 200'000;  // some 1 GB
 
   int degree() const { return arrays_.degree; }
   const DomainArrays& arrays() const { return arrays_; }
@@ -93,6 +93,8 @@ class DmsDomain {
   Status check_functions() const;
   void split_functions();
   void list_functions();
+  void plan_parts();
+  std::vector<Index> splines_of(std::span<const Index> functions) const;
   std::array<int, 3> ijk_of(Index function) const { return ijk_[function % ijk_.size()]; }
 
   DomainArrays arrays_;
@@ -103,6 +105,14 @@ class DmsDomain {
   TriangleGrid grid_;
   std::vector<std::size_t> starts_;  // of the functions of each triangle, and an end
   std::vector<Index> functions_;
+  /// What has to be computed at a point of a part of a triangle (plane/triangle_parts.h).
+  struct Plan {
+    std::size_t first_function = 0;
+    std::size_t first_spline = 0;
+  };
+  std::vector<Plan> plans_;  // of the parts of each triangle, and an end
+  std::vector<Index> planned_functions_;
+  std::vector<Index> planned_splines_;  // parts of splines before them
 };
 
 }  // namespace watertight::spline

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "spline/plane/triangle_parts.h"
+
 namespace watertight::spline {
 namespace {
 
@@ -25,47 +27,42 @@ Point combined(std::span<const Point> points, std::span<const double> factors) {
 BasisEvaluator::BasisEvaluator(const DmsDomain& domain)
     : domain_(domain), splines_(domain.table_.size()) {}
 
-/// The recursion of the paper's equation 1. Each part is computed once a point: functions share
-/// most.
+/// The recursion of the paper's equation 1, from the triangles of knots upwards. Each part is
+/// computed once a point: functions share most.
 template <class IsIn>
-double BasisEvaluator::spline(Index number, const Point& u, const IsIn& is_in) {
-  const SplitSpline& spline = domain_.table_[number];
-  if (!spline.rectangle.has(u)) return 0;
-  Known& known = splines_[number];
-  if (known.point == point_) return known.value;
-  const auto& [a, b, c] = spline.corners;
-  double value = 0;
-  if (spline.is_leaf()) {
-    if (is_in(spline.corners)) value = 1 / spline.doubled_area;
-  } else {
-    const std::array<double, 3> lower{this->spline(spline.lower[0], u, is_in),
-                                      this->spline(spline.lower[1], u, is_in),
-                                      this->spline(spline.lower[2], u, is_in)};
-    if (lower != std::array<double, 3>{}) {
-      value = (twice_area(u, b, c) * lower[0] + twice_area(u, c, a) * lower[1] +
-               twice_area(u, a, b) * lower[2]) /
-              spline.doubled_area;
+void BasisEvaluator::compute_splines(std::span<const Index> splines, const Point& u,
+                                     const IsIn& is_in) {
+  ++point_;
+  for (const Index number : splines) {
+    const SplitSpline& spline = domain_.table_[number];
+    const auto& [a, b, c] = spline.corners;
+    double value = 0;
+    if (spline.is_leaf()) {
+      if (is_in(spline.corners)) value = spline.inverse_area;
+    } else {
+      value = (twice_area(u, b, c) * value_of(spline.lower[0]) +
+               twice_area(u, c, a) * value_of(spline.lower[1]) +
+               twice_area(u, a, b) * value_of(spline.lower[2])) *
+              spline.inverse_area;
     }
+    splines_[number] = {point_, value};
   }
-  known = {point_, value};
-  return value;
 }
 
-template <class IsIn>
 void BasisEvaluator::add_derivatives(const SplitSpline& top, double scale, int order,
-                                     const Point& u, const IsIn& is_in, BasisValue& value) {
+                                     BasisValue& value) const {
   const auto outer = barycentric_gradients(top.corners, top.doubled_area);
   const int degree = domain_.degree();
   for (std::size_t j = 0; j < 3; ++j) {
     const double factor = degree * scale;
-    const double lower = spline(top.lower[j], u, is_in);
+    const double lower = value_of(top.lower[j]);
     value.first[0] += factor * outer[j].x * lower;
     value.first[1] += factor * outer[j].y * lower;
     const SplitSpline& middle = domain_.table_[top.lower[j]];
     if (order < 2 || middle.is_leaf()) continue;
     const auto inner = barycentric_gradients(middle.corners, middle.doubled_area);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double part = factor * (degree - 1) * spline(middle.lower[k], u, is_in);
+      const double part = factor * (degree - 1) * value_of(middle.lower[k]);
       value.second[0] += part * outer[j].x * inner[k].x;
       value.second[1] += part * (outer[j].x * inner[k].y + outer[j].y * inner[k].x) / 2;
       value.second[2] += part * outer[j].y * inner[k].y;
@@ -76,14 +73,22 @@ void BasisEvaluator::add_derivatives(const SplitSpline& top, double scale, int o
 template <class IsIn>
 std::span<const BasisValue> BasisEvaluator::compute(Index triangle, const Point& u, int order,
                                                     const IsIn& is_in) {
-  ++point_;
+  const Triangle& corners = domain_.arrays().triangles[triangle];
+  const std::array<Point, 3> points{domain_.knot(corners[0], 0), domain_.knot(corners[1], 0),
+                                    domain_.knot(corners[2], 0)};
+  const std::size_t part = triangle * kParts + part_of(points, u);
+  const auto& plan = domain_.plans_[part];
+  const auto& end = domain_.plans_[part + 1];
+  compute_splines(std::span(domain_.planned_splines_)
+                      .subspan(plan.first_spline, end.first_spline - plan.first_spline),
+                  u, is_in);
   found_.clear();
-  for (const Index function : domain_.functions_at(triangle)) {
+  for (std::size_t i = plan.first_function; i < end.first_function; ++i) {
+    const Index function = domain_.planned_functions_[i];
     const Index top = domain_.tops_[function];
-    if (!domain_.table_[top].rectangle.has(u)) continue;
     const double scale = domain_.scales_[function];
-    BasisValue value{function, scale * spline(top, u, is_in), {}, {}};
-    if (order > 0) add_derivatives(domain_.table_[top], scale, order, u, is_in, value);
+    BasisValue value{function, scale * value_of(top), {}, {}};
+    if (order > 0) add_derivatives(domain_.table_[top], scale, order, value);
     const bool is_zero = value.value == 0 && value.first == std::array<double, 2>{} &&
                          value.second == std::array<double, 3>{};
     if (!is_zero) found_.push_back(value);

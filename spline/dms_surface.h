@@ -41,14 +41,16 @@ class BasisEvaluator {
   std::span<const BasisValue> in_triangle(Index triangle, const Point& u, int order = 0);
 
  private:
-  /// Splines at one point; `is_in` says whether it counts as in a triangle of knots.
-  template <class IsIn>
-  double spline(Index number, const Point& u, const IsIn& is_in);
-  template <class IsIn>
-  void add_derivatives(const SplitSpline& top, double scale, int order, const Point& u,
-                       const IsIn& is_in, BasisValue& value);
+  /// `is_in` says whether the point counts as in a triangle of knots.
   template <class IsIn>
   std::span<const BasisValue> compute(Index triangle, const Point& u, int order, const IsIn& is_in);
+  template <class IsIn>
+  void compute_splines(std::span<const Index> splines, const Point& u, const IsIn& is_in);
+  void add_derivatives(const SplitSpline& top, double scale, int order, BasisValue& value) const;
+  double value_of(Index spline) const {
+    return splines_[spline].point == point_ ? splines_[spline].value
+                                            : 0;  // else it is beyond its knots
+  }
 
   const DmsDomain& domain_;
   struct Known {

@@ -58,20 +58,6 @@ double derived(std::span<const Point> knots, const Point& direction, const Lower
 
 }  // namespace
 
-double twice_area(const Point& a, const Point& b, const Point& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-int shifted_side(const Point& a, const Point& b, const Point& u) {
-  if (const int side = geometry::turn(a, b, u)) return side;
-  if (a.y != b.y) return a.y > b.y ? 1 : -1;
-  return a.x < b.x ? 1 : a.x > b.x ? -1 : 0;
-}
-
-bool is_in_triangle(const Point& a, const Point& b, const Point& c, const Point& u) {
-  return shifted_side(a, b, u) > 0 && shifted_side(b, c, u) > 0 && shifted_side(c, a, u) > 0;
-}
-
 bool is_in_triangle_from(const Point& a, const Point& b, const Point& c, const Point& u,
                          const Point& from) {
   const auto is_left = [&](const Point& p, const Point& q) {

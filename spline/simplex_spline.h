@@ -13,6 +13,7 @@
 #include <span>
 
 #include "geometry/point.h"
+#include "geometry/predicates/turn.h"
 
 namespace watertight::spline {
 
@@ -25,15 +26,23 @@ inline constexpr int kMostDegree = 3;
 inline constexpr int kMostKnots = kMostDegree + 3;
 
 /// Twice the signed area of a, b, c, rounded; positive for a left turn.
-double twice_area(const Point& a, const Point& b, const Point& c);
+inline double twice_area(const Point& a, const Point& b, const Point& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 /// On which side of the line from a to b the point u + (e, e^2) lies for all small e > 0: +1 is
 /// left, -1 right, 0 only if a equals b. Exact.
-int shifted_side(const Point& a, const Point& b, const Point& u);
+inline int shifted_side(const Point& a, const Point& b, const Point& u) {
+  if (const int side = geometry::turn(a, b, u)) return side;
+  if (a.y != b.y) return a.y > b.y ? 1 : -1;
+  return a.x < b.x ? 1 : a.x > b.x ? -1 : 0;
+}
 
 /// Whether u lies in the half-open triangle a, b, c, which turns left. Each point of a
 /// triangulation's inside lies in exactly one of its triangles. Exact.
-bool is_in_triangle(const Point& a, const Point& b, const Point& c, const Point& u);
+inline bool is_in_triangle(const Point& a, const Point& b, const Point& c, const Point& u) {
+  return shifted_side(a, b, u) > 0 && shifted_side(b, c, u) > 0 && shifted_side(c, a, u) > 0;
+}
 
 /// The same, but points on an edge belong to it as seen from a point: if moving u towards `from`
 /// moves it into the triangle. Where that leaves u on the edge, the half-open rule decides.

@@ -44,6 +44,7 @@ Index SplineTable::add(std::span<const Index> numbers, std::span<const Point> kn
       spline.lower[j] = add(fewer_numbers, fewer);
     }
   }
+  spline.inverse_area = 1 / spline.doubled_area;
   spline.rectangle = Rectangle::around(knots);
   const auto number = static_cast<Index>(splines_.size());
   splines_.push_back(spline);

@@ -18,6 +18,7 @@ namespace watertight::spline {
 struct SplitSpline {
   std::array<Point, 3> corners;  // of the triangle, which turns left; or of the base triple
   double doubled_area = 0;       // signed
+  double inverse_area = 0;       // 1 / doubled_area
   Rectangle rectangle;           // around all knots; the spline is 0 outside of it
   std::array<Index, 3> lower{geometry::kNone, geometry::kNone, geometry::kNone};
 

@@ -9,6 +9,7 @@
 #include "spline/dms_surface.h"
 #include "spline/extend_triangulation.h"
 #include "spline/knot_clouds.h"
+#include "spline/plane/triangle_parts.h"
 #include "spline/thin_plate.h"
 #include "tests/unit/spline/grid_with_hole.h"
 
@@ -145,6 +146,30 @@ TEST_CASE("polygons that are not simple are refused with their number") {
   CHECK(message({square}, {.density = 0}) == "density and regularity must be positive");
   CHECK(message({square}, {.density = 1e-4, .most_vertices = 1000}) ==
         "the region needs more than 1000 vertices");
+}
+
+TEST_CASE("each point of a triangle is in the part that is named") {
+  samples::Numbers numbers(41);
+  for (int i = 0; i < 2000; ++i) {
+    std::array<Point, 3> corners{numbers.point(-1, 1), numbers.point(-1, 1), numbers.point(-1, 1)};
+    if (geometry::turn(corners[0], corners[1], corners[2]) < 0) std::swap(corners[1], corners[2]);
+    // Random points, and points on the lines between parts.
+    double b = i % 2 == 0 ? numbers.between(0, 1) : std::floor(numbers.between(0, 5)) / 4;
+    double c = i % 3 == 0 ? numbers.between(0, 1) : std::floor(numbers.between(0, 5)) / 4;
+    if (b + c > 1) {
+      b = 1 - b;
+      c = 1 - c;
+    }
+    const auto at = [&](auto member) {
+      return corners[0].*member + b * (corners[1].*member - corners[0].*member) +
+             c * (corners[2].*member - corners[0].*member);
+    };
+    const Point u{at(&Point::x), at(&Point::y), 0};
+    const std::size_t part = spline::part_of(corners, u);
+    REQUIRE(part < spline::kParts);
+    const auto own = spline::part_corners(corners, part);
+    for (std::size_t j = 0; j < 3; ++j) CHECK(geometry::turn(own[j], own[(j + 1) % 3], u) > 0);
+  }
 }
 
 TEST_CASE("pieces of a boundary are joined by edges like their own") {

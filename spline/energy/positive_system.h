@@ -3,9 +3,6 @@
 // Sparse systems with a positive definite matrix. Internal to spline/.
 #pragma once
 
-// The same bytes on every machine: one order of sums.
-#define EIGEN_DONT_VECTORIZE
-#define EIGEN_MPL2_ONLY
 #include <Eigen/SparseCholesky>
 
 namespace watertight::spline {

@@ -45,7 +45,7 @@ class Client:
     """curl, which trusts the certificate."""
 
     def __init__(self, certificate, port):
-        self.words = ["curl", "-sS", "--max-time", "60", "--cacert", str(certificate)]
+        self.words = ["curl", "-sS", "--max-time", "240", "--cacert", str(certificate)]
         self.base = f"https://localhost:{port}"
 
     def ask(self, path, *words):

@@ -91,15 +91,22 @@ bool is_allowed(Format format, AcceptedFormats accepted) {
          std::find(kWithIds.begin(), kWithIds.end(), format) != kWithIds.end();
 }
 
-/// The media types of bodies that are taken, with commas between them.
+/// The media types of bodies that are taken, with commas between them, and what names formats that
+/// have none.
 std::string types_of(AcceptedFormats accepted) {
   std::string known;
+  std::string without_type;
   for (const FormatName& name : kNames) {
-    if (!is_allowed(name.format, accepted) || name.type.empty()) continue;
-    known += (known.empty() ? "" : ", ") + std::string(name.type);
+    if (!is_allowed(name.format, accepted)) continue;
+    if (name.type.empty()) {
+      without_type.append(without_type.empty() ? "" : ", ").append("f=").append(name.parameter);
+    } else {
+      known.append(known.empty() ? "" : ", ").append(name.type);
+    }
   }
   if (accepted == AcceptedFormats::with_ids) known.append(", ").append(kContainer);
-  return known;
+  return without_type.empty() ? known
+                              : known + "; or name its format in the address: " + without_type;
 }
 
 Problem unsupported_type(AcceptedFormats accepted) {

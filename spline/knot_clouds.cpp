@@ -274,12 +274,22 @@ class CloudMaker {
   std::vector<Point> clouds_;
 };
 
-Status check_knots(std::span<const Point> vertices, std::span<const Point> fixed, int degree) {
+Status check_input(std::span<const Point> vertices, std::span<const Triangle> triangles,
+                   std::span<const Point> fixed, std::span<const SideRule> rules, int degree) {
   const bool is_degree_known = degree >= 1 && degree <= kMostDegree;
   if (!is_degree_known || fixed.size() % static_cast<std::size_t>(degree) != 0 ||
       fixed.size() / static_cast<std::size_t>(degree) > vertices.size()) {
     return Error{ErrorCode::malformed,
                  "the knots that are given do not fit the degree and the vertices"};
+  }
+  const auto is_there = [&](Index vertex) { return vertex < vertices.size(); };
+  if (!std::ranges::all_of(rules, is_there, &SideRule::vertex)) {
+    return Error{ErrorCode::malformed, "a rule is for a vertex that is not there"};
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (std::ranges::all_of(triangles[t], is_there)) continue;
+    return Error{ErrorCode::malformed,
+                 "triangle " + std::to_string(t) + " has a corner that is no vertex"};
   }
   return Done{};
 }
@@ -291,7 +301,7 @@ Result<std::vector<Point>> make_clouds(std::span<const Point> vertices,
                                        std::span<const Point> fixed,
                                        std::span<const SideRule> rules,
                                        const CloudOptions& options) {
-  if (Status checked = check_knots(vertices, fixed, options.degree); !checked)
+  if (Status checked = check_input(vertices, triangles, fixed, rules, options.degree); !checked)
     return checked.error();
   return CloudMaker(vertices, triangles, fixed, rules, options).make();
 }
@@ -300,7 +310,7 @@ Result<std::vector<Point>> move_off_lines(std::span<const Point> vertices,
                                           std::span<const Triangle> triangles,
                                           std::span<const Point> fixed,
                                           const CloudOptions& options) {
-  if (Status checked = check_knots(vertices, fixed, options.degree); !checked)
+  if (Status checked = check_input(vertices, triangles, fixed, {}, options.degree); !checked)
     return checked.error();
   return CloudMaker(vertices, triangles, fixed, {}, options).move_vertices();
 }

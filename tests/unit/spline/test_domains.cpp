@@ -223,6 +223,14 @@ TEST_CASE("knots that find no place are an error that names the vertex") {
         "the knots of vertex 1 find no place");
   CHECK_FALSE(spline::make_clouds(vertices, triangles, std::vector<Point>(3)));
   CHECK_FALSE(spline::make_clouds(vertices, triangles, {}, {}, {.degree = 7}));
+  const std::vector<Triangle> wrong{{0, 1, 9}};
+  CHECK(spline::make_clouds(vertices, wrong).error().message ==
+        "triangle 0 has a corner that is no vertex");
+  CHECK(spline::move_off_lines(vertices, wrong, {}).error().message ==
+        "triangle 0 has a corner that is no vertex");
+  const std::vector<spline::SideRule> lost{{9, {}, {1, 0, 0}}};
+  CHECK(spline::make_clouds(vertices, triangles, {}, lost).error().message ==
+        "a rule is for a vertex that is not there");
 }
 
 TEST_CASE("a vertex on a line through two knots is moved off it") {

@@ -4,11 +4,13 @@
 
 Each document that the service reads comes back byte for byte from its Watertight file (POST /encode and /decode,
 what is not valid is kept), and each sequence also from a collection that it was stored in, where it holds each id
-once. What the service cannot read is refused with a reason. Exit code 1 after a difference.
+once. What the service cannot read is refused with a reason; it may not refuse what Python reads as a city model.
+Exit code 1 after a difference.
 """
 import json
 import pathlib
 import sys
+import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/siege"))
@@ -25,12 +27,27 @@ def documents(names):
         yield from sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
 
 
+def is_city_model(path, text):
+    """Whether Python reads a document as JSON whose parts are CityJSON, or as XML."""
+    try:
+        if path.suffix == ".gml":
+            xml.etree.ElementTree.fromstring(text)
+            return True
+        if path.suffix not in (".json", ".jsonl"):
+            return False
+        parts = [json.loads(line) for line in text.splitlines()] if path.suffix == ".jsonl" else [json.loads(text)]
+        return all(str(part.get("type")).startswith("CityJSON") for part in parts)
+    except (ValueError, xml.etree.ElementTree.ParseError):
+        return False
+
+
 def comes_back(service, path, text):
     """Whether a document is read and comes back from a Watertight file; None if it is refused with a reason."""
     status, packed = service.request("POST", "/encode?invalid=keep", text, SECONDS, BY_CONTENT)
     if status != 200:
         problem = json.loads(packed)
-        check(400 <= status < 500 and problem["detail"], f"{path}: is refused: {problem.get('detail')}")
+        is_right = 400 <= status < 500 and problem["detail"] and not is_city_model(path, text)
+        check(is_right, f"{path}: is refused: {problem.get('detail')}")
         return None
     status, back = service.request("POST", "/decode", packed, SECONDS, BY_CONTENT)
     check(status == 200 and back == text, f"{path}: {len(text)} bytes come back from {len(packed)}")

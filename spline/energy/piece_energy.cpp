@@ -2,6 +2,7 @@
 #include "spline/energy/piece_energy.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -95,9 +96,9 @@ class TriangleEnergy {
   std::size_t leaf_at(Index number, const std::array<Point, 3>& corners) {
     const auto [entry, is_new] = places_.emplace(number, leaves_.size());
     if (!is_new) return entry->second;
-    ConvexPolygon part = part_in_triangle({corners.begin(), corners.end()}, corners_);
+    ConvexPolygon part = part_in_triangle(ConvexPolygon(corners), corners_);
     if (part.empty()) return entry->second = kNoPart;
-    const Rectangle rectangle = Rectangle::around(part);
+    const Rectangle rectangle = Rectangle::around(part.corners());
     leaves_.push_back({corners, std::move(part), rectangle});
     return entry->second;
   }
@@ -109,9 +110,9 @@ class TriangleEnergy {
   }
 
   static double common_area(const Leaf& one, const Leaf& other, bool are_same) {
-    if (are_same) return area_of(one.part);
+    if (are_same) return area_of(one.part.corners());
     if (!one.rectangle.meets(other.rectangle)) return 0;
-    return area_of(part_in_triangle(one.part, other.corners));
+    return area_of(part_in_triangle(one.part, other.corners).corners());
   }
 
   void add(std::vector<double>& matrix, std::size_t i, std::size_t j, double area,
@@ -131,29 +132,39 @@ class TriangleEnergy {
   std::vector<Term> terms_;  // by leaves
 };
 
+/// Keeps the part left of the line from a to b.
+void cut(ConvexPolygon& polygon, const Point& a, const Point& b) {
+  std::array<double, 16> sides{};
+  double least = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    sides[i] = twice_area(a, b, polygon[i]);
+    least = std::min(least, sides[i]);
+    largest = std::max(largest, sides[i]);
+  }
+  if (least == 0) return;
+  const ConvexPolygon whole = polygon;
+  polygon.clear();
+  if (largest == 0) return;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const std::size_t after = i + 1 < whole.size() ? i + 1 : 0;
+    const Point& point = whole[i];
+    const Point& next = whole[after];
+    if (sides[i] >= 0) polygon.push_back(point);
+    if ((sides[i] > 0 && sides[after] < 0) || (sides[i] < 0 && sides[after] > 0)) {
+      const double share = sides[i] / (sides[i] - sides[after]);
+      polygon.push_back(
+          {point.x + share * (next.x - point.x), point.y + share * (next.y - point.y), 0});
+    }
+  }
+}
+
 }  // namespace
 
-ConvexPolygon part_in_triangle(ConvexPolygon polygon, const std::array<Point, 3>& corners) {
-  ConvexPolygon kept;
-  for (std::size_t j = 0; j < 3 && !polygon.empty(); ++j) {
-    const Point& a = corners[j];
-    const Point& b = corners[(j + 1) % 3];
-    kept.clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const Point& point = polygon[i];
-      const Point& next = polygon[(i + 1) % polygon.size()];
-      const double side = twice_area(a, b, point);
-      const double next_side = twice_area(a, b, next);
-      if (side >= 0) kept.push_back(point);
-      if ((side > 0 && next_side < 0) || (side < 0 && next_side > 0)) {
-        const double share = side / (side - next_side);
-        kept.push_back(
-            {point.x + share * (next.x - point.x), point.y + share * (next.y - point.y), 0});
-      }
-    }
-    std::swap(polygon, kept);
-  }
-  return polygon;
+ConvexPolygon part_in_triangle(const ConvexPolygon& polygon, const std::array<Point, 3>& corners) {
+  ConvexPolygon part = polygon;
+  for (std::size_t j = 0; j < 3 && !part.empty(); ++j) cut(part, corners[j], corners[(j + 1) % 3]);
+  return part;
 }
 
 double area_of(std::span<const Point> polygon) {

@@ -12,12 +12,32 @@
 
 namespace watertight::spline {
 
-/// A convex polygon that turns left.
-using ConvexPolygon = std::vector<Point>;
+/// A convex polygon that turns left: a triangle cut at up to two others.
+class ConvexPolygon {
+ public:
+  ConvexPolygon() = default;
+  explicit ConvexPolygon(const std::array<Point, 3>& corners) {
+    for (const Point& corner : corners) push_back(corner);
+  }
+
+  /// A cut adds one corner at most, but for rounding; corners beyond the room are left out.
+  void push_back(const Point& corner) {
+    if (size_ < corners_.size()) corners_[size_++] = corner;
+  }
+  void clear() { size_ = 0; }
+  bool empty() const { return size_ == 0; }
+  std::size_t size() const { return size_; }
+  const Point& operator[](std::size_t i) const { return corners_[i]; }
+  std::span<const Point> corners() const { return std::span(corners_).first(size_); }
+
+ private:
+  std::array<Point, 16> corners_;
+  std::size_t size_ = 0;
+};
 
 /// The part of a polygon in a triangle that turns left; empty or of area 0 where they do not
 /// overlap.
-ConvexPolygon part_in_triangle(ConvexPolygon polygon, const std::array<Point, 3>& corners);
+ConvexPolygon part_in_triangle(const ConvexPolygon& polygon, const std::array<Point, 3>& corners);
 
 double area_of(std::span<const Point> polygon);
 

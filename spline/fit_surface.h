@@ -25,10 +25,13 @@ struct FittedSurface {
   double largest_distance = 0;  // of the surface from a given point
 };
 
-/// The coefficients with the least sum of squared distances. Errors: malformed if a triangle is not
-/// there, or if the points do not determine the surface (condition above kMostCondition): each
-/// triangle needs as many points as it has functions, well spread. Cost: that of a sparse Cholesky
-/// factorization.
-Result<FittedSurface> fit_surface(const DmsDomain& domain, std::span<const FitPoint> points);
+/// The coefficients with the least sum of squared distances and `stiffness` (an area of the
+/// parameter plane) times the energy of thin_plate.h over the whole domain. With a stiffness above
+/// 0, degree 2 only, three points not on a line determine the surface; without, each triangle needs
+/// as many points as it has functions, well spread. Errors: malformed if a triangle is not there,
+/// or if the points do not determine the surface (condition above kMostCondition); unsupported for
+/// a stiffness with another degree. Cost: that of a sparse Cholesky factorization.
+Result<FittedSurface> fit_surface(const DmsDomain& domain, std::span<const FitPoint> points,
+                                  double stiffness = 0);
 
 }  // namespace watertight::spline

@@ -104,8 +104,8 @@ Result<std::uint64_t> turn_surfaces_into_solids(Document& document);
 
 /// A solid that takes the place of one of a feature.
 struct SolidEdit {
-  std::size_t number = 0;           // of the solid in Feature::solids
-  Solid solid;                      // has the vertices of that solid, all of them in their order
+  std::size_t number = 0;  // of the solid in Feature::solids
+  Solid solid;  // has the vertices of that solid, all of them in their order, and may have more
   std::vector<Index> facet_source;  // facet -> facet of that solid, kNone for a new one
 };
 

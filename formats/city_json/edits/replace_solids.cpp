@@ -3,6 +3,7 @@
 // Other solids in the place of those of a feature: lists of semantics, materials and textures
 // follow the facets.
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -111,6 +112,27 @@ void edit_values(Json& geometry, const Feature& feature, std::span<const SolidEd
   });
 }
 
+/// Lists the vertices that edits add after those that are there.
+Status add_vertices(Json& root, const Feature& feature, std::span<const SolidEdit> edits) {
+  Json* vertices = find_member(root, "vertices");
+  Json* count = vertices == nullptr ? nullptr : find_member(*vertices, "count");
+  Json* solids = vertices == nullptr ? nullptr : find_member(*vertices, "solids");
+  for (const SolidEdit& edit : edits) {
+    const Index before = feature.solids[edit.number].solid.vertex_count();
+    const Index added = edit.solid.vertex_count() - before;
+    if (added == 0) continue;
+    const bool fits = count != nullptr && count->is_number_unsigned() && solids != nullptr &&
+                      solids->is_array() && edit.number < solids->size() &&
+                      (*solids)[edit.number].is_array();
+    if (!fits) return Error{ErrorCode::malformed, "the skeleton has no vertices"};
+    const auto first = count->get<std::uint64_t>();
+    (*solids)[edit.number].push_back(first);
+    (*solids)[edit.number].push_back(added);
+    *count = first + added;
+  }
+  return Done{};
+}
+
 }  // namespace
 
 Status replace_solids(Feature& feature, std::vector<SolidEdit> edits) {
@@ -125,6 +147,7 @@ Status replace_solids(Feature& feature, std::vector<SolidEdit> edits) {
         for (Json& geometry : *geometries) edit_values(geometry, feature, edits);
       }
     }
+    if (Status added = add_vertices(*root, feature, edits); !added) return added;
     feature.skeleton = json_text(*root);
   }
   feature.layout = {};

@@ -126,6 +126,8 @@ struct RepairCommand {
   std::string remedies = "rings,orientation,junctions";  // or "all"
   double weld_metres = 0;
   std::size_t most_islands = 4;
+  repair::SmoothOptions smooth;
+  std::string spline;  // file for the surfaces of smooth patches, "" for none
   std::string report;  // file for the JSON report, "" for none
   std::string html;    // file for an HTML page, "" for none
   bool leaves_times_out = false;

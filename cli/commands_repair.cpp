@@ -30,7 +30,8 @@ using repair::Remedy;
 void print(const SolidRepair& repair) {
   const std::string& object =
       repair.source.object_id.empty() ? repair.feature : repair.source.object_id;
-  std::string place = printable(object);
+  std::string place =
+      object.empty() ? "solid " + std::to_string(repair.source.ordinal) : printable(object);
   if (!repair.source.lod.empty()) place += " LoD " + printable(repair.source.lod);
   std::printf("%s: %s\n", place.c_str(), pipeline::account_of(repair.summary).c_str());
 }
@@ -90,6 +91,8 @@ repair::RepairOptions options_of(const RepairCommand& command) {
   options.remedies = *repair::remedies_of(command.remedies);
   options.most_islands = command.most_islands;
   options.weld_metres = command.weld_metres;
+  options.smooth = command.smooth;
+  options.smooth.keeps_surface = !command.spline.empty();
   validate::GroupOptions groups;  // solids are repaired one by one
   apply(command.rules, options.certify, groups);
   return options;
@@ -117,6 +120,7 @@ class RepairRun {
   Status report_on(const Document& document, const DocumentRepair& outcome);
   Status begin_reports(std::optional<Format> format);
   Status end_reports(const std::vector<std::string>& notes);
+  Status save_splines(const DocumentRepair& outcome);
   void print_notes(const Document& document) const;
   void print_outcome(const DocumentRepair& outcome) const;
   /// The error, which is about another file than the input.
@@ -286,6 +290,20 @@ Result<std::optional<DocumentRepair>> RepairRun::repair_whole() {
   return std::optional(std::move(outcome));
 }
 
+/// Writes the surfaces of smooth patches, if they are asked for.
+Status RepairRun::save_splines(const DocumentRepair& outcome) {
+  if (command_.spline.empty()) return Done{};
+  auto writer = files::FileWriter::open(command_.spline);
+  if (!writer) return std::move(writer).error();
+  for (const SolidRepair& repair : outcome.repairs) {
+    for (const repair::HoleFill& hole : repair.summary.holes) {
+      if (hole.spline.empty()) continue;
+      if (Status written = writer->write(hole.spline + '\n'); !written) return written;
+    }
+  }
+  return writer->commit();
+}
+
 void RepairRun::print_outcome(const DocumentRepair& outcome) const {
   const bool is_output_taken =
       command_.output == "-" || command_.report == "-" || command_.html == "-";
@@ -310,6 +328,8 @@ Exit RepairRun::run() {
     if (!*whole) return Exit::error;
     outcome = *std::move(whole);
   }
+  if (const Status saved = save_splines(*outcome); !saved)
+    return fail(command_.spline, saved.error());
   Exit exit = exit_of_repair(*outcome);
   reports_.finish([&](const std::string& file, const Error& error) { exit = fail(file, error); });
   print_outcome(*outcome);

@@ -5,32 +5,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <thread>
 
-#include "cli/arguments.h"
+#include "cli/arguments/arguments.h"
 #include "pipeline/pipeline.h"
-#include "repair/repair.h"
 
 namespace watertight::cli {
 namespace {
 
 std::size_t default_jobs() {
   return std::max(1U, std::min(std::thread::hardware_concurrency(), 64U));
-}
-
-/// Like CLI::Range, but refuses "nan", which CLI::Range accepts as in range.
-CLI::Validator in_range(double min, double max, const std::string& words) {
-  const auto check = [min, max, words](std::string& text) {
-    double value = 0;
-    const char* end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    const bool is_good = error == std::errc{} && rest == end && value >= min && value <= max;
-    return is_good ? std::string() : "'" + text + "' is not a number " + words;
-  };
-  return CLI::Validator(check, words);
 }
 
 void add_jobs(CLI::App& app, std::size_t& jobs,
@@ -72,9 +58,10 @@ void add_surfaces(CLI::App& sub, std::string& surfaces) {
 }
 
 /// Adds how near the triangles of curved solids are to their surfaces.
-void add_chord(CLI::App& sub, double& chord) {
-  sub.add_option("--chord", chord,
-                 "largest distance of triangles from the surfaces of curved solids, metres")
+CLI::Option* add_chord(CLI::App& sub, double& chord) {
+  return sub
+      .add_option("--chord", chord,
+                  "largest distance of triangles from the surfaces of curved solids, metres")
       ->check(in_range(1e-9, 1000, "from 1e-9 to 1000"))
       ->type_name("M")
       ->capture_default_str();
@@ -301,22 +288,6 @@ void add_convert(CLI::App& app, ConvertCommand& command, Chosen& chosen) {
   sub->callback([&] { chosen = [&] { return run(command); }; });
 }
 
-CLI::Option* add_remedies(CLI::App& sub, const std::string& name, std::string& remedies,
-                          double& weld_metres) {
-  sub.add_option("--weld", weld_metres, "largest move of a vertex by weld, metres")
-      ->check(in_range(0, 1000, "from 0 to 1000"))
-      ->capture_default_str();
-  return sub
-      .add_option(name, remedies,
-                  "remedies for invalid solids: rings, orientation and junctions guess nothing; "
-                  "weld (with --weld), facets and fill do; all: every one")
-      ->type_name("LIST")
-      ->check([](const std::string& list) {
-        const auto read = repair::remedies_of(list);
-        return read ? std::string() : read.error().message;
-      });
-}
-
 void add_repair(CLI::App& app, RepairCommand& command, Chosen& chosen) {
   CLI::App* sub =
       app.add_subcommand("repair", "Make invalid solids valid by the least change, and prove it");
@@ -332,13 +303,17 @@ void add_repair(CLI::App& app, RepairCommand& command, Chosen& chosen) {
                   "most islands of a hole for which fill looks for the best triangles")
       ->check(in_range(0, 5, "from 0 to 5"))
       ->capture_default_str();
+  add_smooth(*sub, command);
   add_rules(*sub, command.rules);
   add_surfaces(*sub, command.surfaces);
-  add_chord(*sub, command.chord);
+  const CLI::Option* chord = add_chord(*sub, command.chord);
   sub->add_flag("-q,--quiet", command.is_quiet, "the table only");
   add_jobs(*sub, command.jobs, "solids repaired at once");
   command.program_version = WATERTIGHT_VERSION;
-  sub->callback([&] { chosen = [&] { return run(command); }; });
+  sub->callback([&, chord] {
+    if (chord->count() > 0) command.smooth.chord_metres = command.chord;
+    chosen = [&] { return run(command); };
+  });
 }
 
 void add_tiles(CLI::App& app, TilesCommand& command, Chosen& chosen) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "repair/hole_groups.h"
 #include "repair/remedies.h"
 #include "repair/shell_surface.h"
+#include "repair/smooth/smooth_holes.h"
 #include "tessellate/facets.h"
 
 namespace watertight::repair {
@@ -18,15 +20,15 @@ namespace {
 using tessellate::FacetState;
 
 /// The canonical triangles of a facet with these rings; none if the rings bound no region.
-std::vector<Ring> triangles_in_plan(const EditedSolid& solid, const EditedFacet& facet) {
-  std::vector<Ring> result;
+std::vector<Triangle> triangles_in_plan(const EditedSolid& solid, const EditedFacet& facet) {
+  std::vector<Triangle> result;
   const Result<FacetAlone> own = alone(solid, facet);
   if (!own) return result;
   const tessellate::FacetTriangles facets = tessellate::triangulate_facets(own->solid);
   if (facets.state[0] != FacetState::triangulated) return result;
   for (const Triangle& triangle : facets.triangles) {
-    Ring& ring = result.emplace_back();
-    for (const Index vertex : triangle) ring.push_back(own->vertices[vertex]);
+    const auto& [a, b, c] = triangle;
+    result.push_back({own->vertices[a], own->vertices[b], own->vertices[c]});
   }
   return result;
 }
@@ -93,19 +95,30 @@ Result<std::vector<Triangle>> best_triangles(const EditedSolid& solid, const She
   return std::move(best->triangles);
 }
 
-/// Adds the facets that close a hole.
-HoleFill fill_hole(const EditedSolid& solid, const ShellSurface& surface, HoleLoops loops,
-                   const FillHolesOptions& options, std::vector<EditedFacet>& facets) {
-  HoleFill fill;
+/// Closes a hole by triangles.
+void close_by(std::span<const Triangle> triangles, ClosedHole& closed) {
+  closed.triangles.assign(triangles.begin(), triangles.end());
+  closed.fill.facets = triangles.size();
+  for (const Triangle& triangle : triangles)
+    closed.facets.push_back({{Ring(triangle.begin(), triangle.end())}, kNone});
+}
+
+/// Finds the facets that close a hole.
+ClosedHole close_hole(const EditedSolid& solid, const ShellSurface& surface, HoleLoops loops,
+                      const FillHolesOptions& options) {
+  ClosedHole closed;
+  HoleFill& fill = closed.fill;
   fill.loops = loops.size();
   for (const Ring& loop : loops) fill.vertices += loop.size();
-  EditedFacet facet{std::move(loops), kNone};
-  std::vector<Ring> in_plan = triangles_in_plan(solid, facet);
+  closed.loops = std::move(loops);
+  EditedFacet facet{closed.loops, kNone};
+  std::vector<Triangle> in_plan = triangles_in_plan(solid, facet);
   if (!in_plan.empty() && is_planar(solid, surface, facet.rings, options.tolerances)) {
     fill.method = "facet";
     fill.facets = 1;
-    facets.push_back(std::move(facet));
-    return fill;
+    closed.triangles = std::move(in_plan);
+    closed.facets.push_back(std::move(facet));
+    return closed;
   }
   if (!options.prefers_plan || in_plan.empty()) {
     const bool is_bounded = fill.loops <= options.most_islands + 1;
@@ -113,23 +126,19 @@ HoleFill fill_hole(const EditedSolid& solid, const ShellSurface& surface, HoleLo
                           ? best_triangles(solid, surface, facet.rings, options.is_cancelled, fill)
                           : Error{ErrorCode::limit_exceeded, "the hole has too many islands"};
     if (best) {
-      fill.facets = best->size();
-      for (const Triangle& triangle : *best) {
-        facets.push_back({{Ring(triangle.begin(), triangle.end())}, kNone});
-      }
-      return fill;
+      close_by(*best, closed);
+      return closed;
     }
     fill.reason = best.error().message;
   }
   if (in_plan.empty()) {
     fill.method = "unfilled";
-    return fill;
+    return closed;
   }
   fill.method = "plan";
   fill.reason.clear();
-  fill.facets = in_plan.size();
-  for (Ring& triangle : in_plan) facets.push_back({{std::move(triangle)}, kNone});
-  return fill;
+  close_by(in_plan, closed);
+  return closed;
 }
 
 /// The sum of angles for each inner edge of a filling (n + 3k - 6 for k loops of n vertices).
@@ -173,23 +182,25 @@ std::vector<HoleFill> fill_holes(EditedSolid& solid, const FillHolesOptions& opt
     shells.push_back(holes_of(solid, surface, shell, options));
   }
   if (options.joins_parts && std::ranges::none_of(shells, &ShellHoles::has_joined)) return fills;
-  std::vector<std::vector<EditedFacet>> added(solid.shells.size());
+  std::vector<ClosedHole> closed;
   for (std::size_t shell = 0; shell < shells.size(); ++shell) {
     for (HoleLoops& loops : shells[shell].holes) {
       if (options.is_cancelled && options.is_cancelled()) break;
-      HoleFill fill = fill_hole(solid, surface, std::move(loops), options, added[shell]);
-      fill.shell = static_cast<Index>(shell);
-      fills.push_back(std::move(fill));
+      closed.push_back(close_hole(solid, surface, std::move(loops), options));
+      closed.back().fill.shell = static_cast<Index>(shell);
     }
     if (shells[shell].left_over == 0) continue;
-    HoleFill& fill = fills.emplace_back();
+    HoleFill& fill = closed.emplace_back().fill;
     fill.shell = static_cast<Index>(shell);
     fill.vertices = shells[shell].left_over;
     fill.method = "unfilled";
     fill.reason = "more than two facets meet along the border";
   }
-  for (std::size_t shell = 0; shell < added.size(); ++shell) {
-    for (EditedFacet& facet : added[shell]) solid.shells[shell].push_back(std::move(facet));
+  if (options.smooth) smooth_holes(solid, surface, closed, *options.smooth, options.is_cancelled);
+  for (ClosedHole& hole : closed) {
+    auto& facets = solid.shells[hole.fill.shell];
+    std::ranges::move(hole.facets, std::back_inserter(facets));
+    fills.push_back(std::move(hole.fill));
   }
   return fills;
 }

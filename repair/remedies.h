@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "base/cancel.h"
 #include "geometry/valid_solid.h"
 #include "repair/edited_solid.h"
+#include "repair/smooth/smooth_options.h"
 
 namespace watertight::repair {
 
@@ -51,19 +53,24 @@ struct HoleFill {
   std::size_t loops = 0;
   std::size_t vertices = 0;
   std::size_t facets = 0;  // new ones
-  std::string method;      // "facet", "delaunay", "all", "plan" or "unfilled"; see fill_holes()
-  std::string reason;      // why it is unfilled
-  double angle = 0;        // "delaunay", "all": the sum of angles between triangles, in radians
-  double area = 0;         // "delaunay", "all": square metres
+  std::string method;  // "facet", "delaunay", "all", "plan", "smooth", "unfilled"; see fill_holes()
+  std::string reason;  // why it is unfilled
+  double angle = 0;    // "delaunay", "all": the sum of angles between triangles, in radians
+  double area = 0;     // "delaunay", "all": square metres
   std::size_t alternatives = 0;  // "delaunay", "all": the number of triangles to choose from
+  std::optional<SmoothMeasures> smooth;  // of a smooth patch
+  std::string spline;          // its surface, where SmoothOptions::keeps_surface (docs/formats.md)
+  std::string smooth_refusal;  // why there is none, where one was asked for: a SmoothRefusal
+  std::string smooth_detail;   // the same in a sentence
 };
 
 struct FillHolesOptions {
   Tolerances tolerances;
-  std::size_t most_islands = 4;  // holes with more are not filled by an optimum
-  bool prefers_plan = false;     // method "plan" before the optimum
-  bool joins_parts = false;      // only where tubes join parts of a shell (hole_groups.h)
-  CancelPoll is_cancelled;       // then holes stay open
+  std::size_t most_islands = 4;         // holes with more are not filled by an optimum
+  bool prefers_plan = false;            // method "plan" before the optimum
+  bool joins_parts = false;             // only where tubes join parts of a shell (hole_groups.h)
+  CancelPoll is_cancelled;              // then holes stay open
+  std::optional<SmoothOptions> smooth;  // a smooth patch in the place of each filling
 };
 
 /// Closes the borders of shells. Loops that lie inside another one and run the other way are its
@@ -73,6 +80,8 @@ struct FillHolesOptions {
 ///             the hole, among the Delaunay triangles of its vertices that meet no other facet
 ///   all       the same among all triangles, for small holes
 ///   plan      the canonical triangles of a facet with these rings
+/// With `smooth`, a filling gives place to a patch that goes on as the surface around it does
+/// ("smooth"); where that cannot be, the filling stays, and HoleFill says why.
 /// Nothing is filled with `joins_parts` where no two parts can be joined. Cost: O(n log n) and that
 /// of fill/triangulate_loops.h for each hole.
 std::vector<HoleFill> fill_holes(EditedSolid& solid, const FillHolesOptions& options);

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
+
+#include "repair/smooth/finer_lattice.h"
 
 namespace watertight::repair {
 namespace {
@@ -22,6 +25,7 @@ struct Attempt {
   bool has_fill = false;
   bool prefers_plan = false;  // holes are filled in plan rather than by the least angles
   bool joins_parts = false;   // parts of a shell are joined by tubes
+  bool has_smooth = false;    // holes get smooth patches
 };
 
 bool has(const RepairOptions& options, Remedy remedy) {
@@ -29,7 +33,8 @@ bool has(const RepairOptions& options, Remedy remedy) {
 }
 
 /// The sets in the order in which they are tried: what guesses nothing, then welding and triangles
-/// for bent facets, then all that again with filled holes.
+/// for bent facets, then all that again with filled holes. Smooth patches come before fillings, and
+/// fillings after them even where only `smooth` is asked for.
 std::vector<Attempt> attempts_of(const RepairOptions& options) {
   std::vector<double> welds{0};
   if (has(options, Remedy::weld) && options.weld_metres > 0) {
@@ -42,13 +47,17 @@ std::vector<Attempt> attempts_of(const RepairOptions& options) {
   attempts.push_back({});
   if (has_orientation) attempts.push_back({true});
   if (has_junctions) attempts.push_back({has_orientation, true});
+  const bool has_smooth = has(options, Remedy::smooth);
   for (const bool fill : {false, true}) {
-    if (fill && !has(options, Remedy::fill)) break;
+    if (fill && !has(options, Remedy::fill) && !has_smooth) break;
     for (const double weld : welds) {
       for (const bool facets : {false, true}) {
         if (facets && !has(options, Remedy::facets)) break;
         if (!fill && !facets && weld == 0) continue;
-        Attempt attempt{has_orientation, has_junctions, weld, facets, fill, false, false};
+        Attempt attempt{has_orientation, has_junctions, weld, facets, fill};
+        attempt.has_smooth = fill && has_smooth;
+        if (attempt.has_smooth) attempts.push_back(attempt);
+        attempt.has_smooth = false;
         attempts.push_back(attempt);
         if (!fill) continue;
         attempt.prefers_plan = true;
@@ -93,13 +102,11 @@ class Trial {
     if (attempt.has_junctions) note(Remedy::junctions, insert_junctions(work));
     std::vector<HoleFill> holes;
     if (attempt.has_fill) {
-      holes = fill_holes(work,
-                         {options_.certify.tolerances, options_.most_islands, attempt.prefers_plan,
-                          attempt.joins_parts, options_.certify.ladder.cancel});
+      holes = filled(work, attempt);
       if (attempt.joins_parts && holes.empty()) return false;
       if (first_holes_.empty()) first_holes_ = holes;
-      note(Remedy::fill, static_cast<std::size_t>(std::ranges::count_if(
-                             holes, [](const HoleFill& hole) { return hole.facets > 0; })));
+      for (const HoleFill& hole : holes)
+        note(hole.smooth ? Remedy::smooth : Remedy::fill, hole.facets);
     }
     if (attempt.has_orientation) note(Remedy::orientation, orient(work));
     if (attempt.has_facets) note(Remedy::facets, mend_bent_facets(work));
@@ -130,6 +137,24 @@ class Trial {
     EditedSolid solid;
     validate::Report report;
   };
+
+  std::vector<HoleFill> filled(EditedSolid& work, const Attempt& attempt) const {
+    FillHolesOptions filling;
+    filling.tolerances = options_.certify.tolerances;
+    filling.most_islands = options_.most_islands;
+    filling.prefers_plan = attempt.prefers_plan;
+    filling.joins_parts = attempt.joins_parts;
+    filling.is_cancelled = options_.certify.ladder.cancel;
+    if (attempt.has_smooth) filling.smooth = options_.smooth;
+    std::vector<HoleFill> holes = fill_holes(work, filling);
+    if (!has(options_, Remedy::smooth) || attempt.has_smooth) return holes;
+    // The set with smooth patches was tried before.
+    for (HoleFill& hole : holes) {
+      hole.smooth_refusal = "not_valid";
+      hole.smooth_detail = "the solid with smooth patches is not valid";
+    }
+    return holes;
+  }
 
   /// What was found in these facets; null if they were not judged yet.
   const validate::Report* report_on(const EditedSolid& work) const {
@@ -175,6 +200,8 @@ std::string_view to_string(Remedy remedy) {
       return "facets";
     case Remedy::fill:
       return "fill";
+    case Remedy::smooth:
+      return "smooth";
   }
   return "";
 }
@@ -186,14 +213,15 @@ Result<std::vector<Remedy>> remedies_of(std::string_view list) {
     const std::string_view name = list.substr(0, comma);
     bool is_known = name == "all";
     for (std::size_t i = 0; i < kAllRemedies.size(); ++i) {
-      if (name != "all" && name != to_string(kAllRemedies[i])) continue;
+      const bool is_in_all = name == "all" && kAllRemedies[i] != Remedy::smooth;
+      if (!is_in_all && name != to_string(kAllRemedies[i])) continue;
       is_known = is_named[i] = true;
     }
     if (!is_known) {
       return Error{ErrorCode::invalid_argument,
                    "there is no remedy '" + std::string(name) +
-                       "': the remedies are rings, orientation, junctions, weld, facets, fill, or "
-                       "all of them by 'all'"};
+                       "': the remedies are rings, orientation, junctions, weld, facets, fill, "
+                       "all of these by 'all', and smooth"};
     }
     if (comma == std::string_view::npos) break;
     list.remove_prefix(comma + 1);
@@ -205,20 +233,54 @@ Result<std::vector<Remedy>> remedies_of(std::string_view list) {
   return remedies;
 }
 
+namespace {
+
+/// The vertices of a submitted solid and, after them, those of edits with other places.
+struct JoinedVertices {
+  Lattice lattice;
+  std::vector<Point> points;
+  std::vector<Index> number_of;  // vertex of the edits -> point
+};
+
+Result<JoinedVertices> join_vertices(const Solid& submitted, const EditedSolid& edits) {
+  const std::size_t count = submitted.vertex_count();
+  JoinedVertices joined{edits.lattice, {}, {}};
+  std::vector<Point> all(submitted.vertices().begin(), submitted.vertices().end());
+  if (edits.lattice == submitted.lattice()) {
+    all.insert(all.end(), edits.vertices.begin(), edits.vertices.end());
+  } else {
+    auto both =
+        on_one_lattice(submitted.lattice(), submitted.vertices(), edits.lattice, edits.vertices);
+    if (!both) return std::move(both).error();
+    joined.lattice = both->lattice;
+    all = std::move(both->points);
+  }
+  joined.points.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+  std::map<Point, Index> number_of;
+  for (Index vertex = 0; vertex < count; ++vertex) number_of.emplace(all[vertex], vertex);
+  for (const Point& point : std::span(all).subspan(count)) {
+    const auto [found, is_new] = number_of.emplace(point, static_cast<Index>(joined.points.size()));
+    if (is_new) joined.points.push_back(point);
+    joined.number_of.push_back(found->second);
+  }
+  return joined;
+}
+
+}  // namespace
+
 Result<OnSubmittedVertices> on_submitted_vertices(const Solid& submitted,
                                                   const EditedSolid& edits) {
-  std::map<Point, Index> number_of;
-  for (Index vertex = 0; vertex < submitted.vertex_count(); ++vertex) {
-    number_of.emplace(submitted.vertices()[vertex], vertex);
-  }
+  auto joined = join_vertices(submitted, edits);
+  if (!joined) return std::move(joined).error();
   EditedSolid renumbered = edits;
-  renumbered.vertices.assign(submitted.vertices().begin(), submitted.vertices().end());
+  renumbered.vertices = std::move(joined->points);
+  renumbered.lattice = joined->lattice;
   std::vector<Index> source;
   for (auto& facets : renumbered.shells) {
     for (EditedFacet& facet : facets) {
       source.push_back(facet.source);
       for (Ring& ring : facet.rings) {
-        for (Index& vertex : ring) vertex = number_of.at(edits.vertices[vertex]);
+        for (Index& vertex : ring) vertex = joined->number_of[vertex];
       }
     }
   }

@@ -15,18 +15,21 @@
 namespace watertight::repair {
 
 /// The remedies in the order in which they are tried. The first three guess nothing.
-enum class Remedy : std::uint8_t { rings, orientation, junctions, weld, facets, fill };
+enum class Remedy : std::uint8_t { rings, orientation, junctions, weld, facets, fill, smooth };
 inline constexpr std::array kAllRemedies{Remedy::rings, Remedy::orientation, Remedy::junctions,
-                                         Remedy::weld,  Remedy::facets,      Remedy::fill};
+                                         Remedy::weld,  Remedy::facets,      Remedy::fill,
+                                         Remedy::smooth};
 std::string_view to_string(Remedy remedy);
-/// The remedies of a list, parted by commas ("rings,fill"), or all ("all"), in their order. Errors:
-/// invalid_argument for an unknown or empty name.
+/// The remedies of a list, parted by commas ("rings,fill"), in their order; "all" stands for all
+/// but `smooth`, which makes vertices that nobody measured. Errors: invalid_argument for an unknown
+/// or empty name.
 Result<std::vector<Remedy>> remedies_of(std::string_view list);
 
 struct RepairOptions {
   std::vector<Remedy> remedies{Remedy::rings, Remedy::orientation, Remedy::junctions};
   double weld_metres = 0;        // the largest move of a vertex by Remedy::weld; 0: none
   std::size_t most_islands = 4;  // the most islands of a hole that is filled by an optimum
+  SmoothOptions smooth;          // of Remedy::smooth
   CertifyOptions certify;
 };
 
@@ -39,16 +42,16 @@ struct Repaired {
   std::optional<EditedSolid> edits;  // the facets of the repaired solid and where they came from
   std::vector<Remedy> remedies;      // those that changed something
   Moves moves;                       // by Remedy::weld
-  std::vector<HoleFill> holes;       // without a repair those of the first set with Remedy::fill
+  std::vector<HoleFill> holes;       // without a repair those of the first set that fills holes
 };
 
-/// A repaired solid on the vertices of the submitted one, all of them in their order.
+/// A repaired solid on the vertices of the submitted one, all of them in their order, and after
+/// them those that Remedy::smooth made. The lattice is that of the submitted solid or a finer one.
 struct OnSubmittedVertices {
   Solid solid;
   std::vector<Index> facet_source;  // facet -> facet of the submitted solid, kNone for a new one
 };
-/// Requires edits of that solid: no remedy makes a new place. Errors: limit_exceeded. Cost:
-/// O(n log n).
+/// Requires edits of that solid. Errors: limit_exceeded. Cost: O(n log n).
 Result<OnSubmittedVertices> on_submitted_vertices(const Solid& submitted, const EditedSolid& edits);
 
 /// Repairs a solid. Never fails. Deterministic but for time limits of engines and

@@ -53,6 +53,11 @@ bool ShellSurface::has_room_for(const Triangle& triangle) const {
   return is_free;
 }
 
+Index ShellSurface::third(Index from, Index to) const {
+  const auto found = sides_.find({from, to});
+  return found == sides_.end() || found->second.uses > 1 ? kNone : found->second.third;
+}
+
 geometry::Vector3 ShellSurface::behind(Index from, Index to) const {
   const auto found = sides_.find({to, from});
   if (found == sides_.end()) return {};

@@ -30,6 +30,12 @@ class ShellSurface {
   /// another one, into the facet that is there; zero if that facet has no triangulation.
   geometry::Vector3 behind(Index from, Index to) const;
 
+  /// The third vertex of the triangle that has this directed edge; kNone if none or several have
+  /// it.
+  Index third(Index from, Index to) const;
+
+  std::span<const Triangle> triangles() const { return triangles_; }
+
   /// metres_per_unit() of the solid.
   const geometry::Vector3& units() const { return units_; }
 

@@ -20,6 +20,18 @@ std::string_view name_of(Repaired::Outcome outcome) {
   return "";
 }
 
+void write_smooth(JsonText& json, const SmoothMeasures& smooth) {
+  json.key("smooth").open('{').key("vertices").value(std::uint64_t{smooth.vertices});
+  json.key("unknowns").value(std::uint64_t{smooth.unknowns}).key("energy").value(smooth.energy);
+  json.key("condition").value(smooth.condition).key("stretch").value(smooth.stretch);
+  json.key("value_jump").value(smooth.value_jump).key("normal_jump").value(smooth.normal_jump);
+  json.key("border_distance").value(smooth.border_distance);
+  json.key("least_curvature").value(smooth.least_curvature);
+  json.key("largest_curvature").value(smooth.largest_curvature);
+  json.key("mean_turn").value(smooth.mean_turn).key("largest_turn").value(smooth.largest_turn);
+  json.close('}');
+}
+
 void write_hole(JsonText& json, const HoleFill& hole) {
   json.open('{').key("shell").value(hole.shell);
   json.key("loops").value(std::uint64_t{hole.loops});
@@ -30,6 +42,11 @@ void write_hole(JsonText& json, const HoleFill& hole) {
     json.key("alternatives").value(std::uint64_t{hole.alternatives});
   }
   if (!hole.reason.empty()) json.key("reason").value(hole.reason);
+  if (hole.smooth) write_smooth(json, *hole.smooth);
+  if (!hole.smooth_refusal.empty()) {
+    json.key("not_smooth").open('{').key("reason").value(hole.smooth_refusal);
+    json.key("detail").value(hole.smooth_detail).close('}');
+  }
   json.close('}');
 }
 

@@ -91,6 +91,12 @@ void write_remedies(JsonText& json, const repair::RepairOptions& options) {
   }
   json.key("remedies").value(remedies).key("weld_tol").value(options.weld_metres);
   json.key("islands").value(std::uint64_t{options.most_islands});
+  if (std::ranges::find(options.remedies, repair::Remedy::smooth) == options.remedies.end()) return;
+  const repair::SmoothOptions& smooth = options.smooth;
+  json.key("density").value(smooth.density).key("regularity").value(smooth.regularity);
+  json.key("collar").value(std::int64_t{smooth.collar.rings});
+  json.key("crease").value(smooth.collar.crease_degrees);
+  if (smooth.chord_metres > 0) json.key("smooth_chord").value(smooth.chord_metres);
 }
 
 void write_tessellation(JsonText& json, const formats::Tessellation& made) {

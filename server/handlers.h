@@ -72,13 +72,15 @@ inline constexpr std::string_view kSubmitParameters[] = {
 
 /// The parameters of a document that is stored.
 inline constexpr std::string_view kStoreParameters[] = {
-    "f",     "invalid", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps",
-    "proof", "strict",  "repair",   "weld",      "islands",         "chord"};
+    "f",      "invalid", "surfaces", "planarity", "planarity-angle", "overlap", "exact-overlaps",
+    "proof",  "strict",  "repair",   "weld",      "islands",         "density", "regularity",
+    "collar", "crease",  "chord"};
 
 /// The parameters of a document that is repaired.
 inline constexpr std::string_view kRepairParameters[] = {
-    "f",       "to",        "remedies",        "weld",  "islands",
-    "invalid", "planarity", "planarity-angle", "proof", "strict"};
+    "f",       "to",         "remedies",        "weld",   "islands",
+    "density", "regularity", "collar",          "crease", "chord",
+    "invalid", "planarity",  "planarity-angle", "proof",  "strict"};
 
 /// The parameters of a file that becomes a job.
 inline constexpr std::string_view kJobParameters[] = {

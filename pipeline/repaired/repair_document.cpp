@@ -19,9 +19,12 @@ namespace {
 using repair::Repaired;
 
 /// Repairs a solid; nothing if it is valid as it was read.
-std::optional<Repaired> repaired(const SubmittedSolid& submitted, delaunay::EngineWorkers* workers,
+std::optional<Repaired> repaired(const Feature& feature, const SubmittedSolid& submitted,
+                                 delaunay::EngineWorkers* workers,
                                  const repair::RepairOptions& options) {
   repair::RepairOptions own = options;
+  // The transform of a city model has no finer steps.
+  own.smooth.keeps_lattice = feature.skeleton.starts_with('{');
   own.certify.unclosed_rings = submitted.unclosed_rings;
   own.certify.unreadable = submitted.unreadable;
   Repaired result = repair::repair(submitted.solid, workers, own);
@@ -34,13 +37,14 @@ std::vector<std::optional<Repaired>> repaired_solids(const Document& document,
                                                      delaunay::EngineWorkers* workers,
                                                      const repair::RepairOptions& options,
                                                      unsigned threads) {
-  std::vector<const SubmittedSolid*> solids;
+  std::vector<std::pair<const Feature*, const SubmittedSolid*>> solids;
   for (const Feature& feature : document.features) {
-    for (const SubmittedSolid& submitted : feature.solids) solids.push_back(&submitted);
+    for (const SubmittedSolid& submitted : feature.solids)
+      solids.emplace_back(&feature, &submitted);
   }
   std::vector<std::optional<Repaired>> results(solids.size());
   geometry::for_each_piece(solids.size(), threads, [&](std::size_t i, bool) {
-    results[i] = repaired(*solids[i], workers, options);
+    results[i] = repaired(*solids[i].first, *solids[i].second, workers, options);
   });
   return results;
 }
@@ -89,7 +93,7 @@ Result<std::vector<SolidRepair>> repair_feature(Feature& feature, delaunay::Engi
                                                 const repair::RepairOptions& options) {
   std::vector<std::optional<Repaired>> results;
   for (const SubmittedSolid& submitted : feature.solids) {
-    results.push_back(repaired(submitted, workers, options));
+    results.push_back(repaired(feature, submitted, workers, options));
   }
   std::vector<SolidRepair> repairs;
   if (const Status applied = apply(feature, results, repairs); !applied) return applied.error();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/repaired/repair_notes.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
 #include <vector>
 
 #include "base/quantity.h"
@@ -15,6 +17,44 @@ std::string fixed_text(double value, int decimals) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
   return text.data();
+}
+
+std::string short_text(double value) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+/// The smooth patches: "1 hole of 12 edges: 19 vertices and 48 facets added, largest turn across
+/// the border 11 degrees, energy 2.1", and why holes got none. Empty without any.
+std::string patches_of(const repair::RepairSummary& changes) {
+  std::size_t holes = 0;
+  std::size_t edges = 0;
+  std::size_t facets = 0;
+  repair::SmoothMeasures sum;
+  std::map<std::string, std::size_t> refusals;
+  for (const repair::HoleFill& hole : changes.holes) {
+    if (!hole.smooth_refusal.empty()) ++refusals[hole.smooth_refusal];
+    if (!hole.smooth) continue;
+    ++holes;
+    edges += hole.vertices;
+    facets += hole.facets;
+    sum.vertices += hole.smooth->vertices;
+    sum.largest_turn = std::max(sum.largest_turn, hole.smooth->largest_turn);
+    sum.energy += hole.smooth->energy;
+  }
+  std::string text;
+  if (holes > 0) {
+    text = quantity(holes, "hole") + " of " + quantity(edges, "edge") + ": " +
+           quantity(sum.vertices, "vertex", "vertices") + " and " + quantity(facets, "facet") +
+           " added, largest turn across the border " + fixed_text(sum.largest_turn, 1) +
+           " degrees, energy " + short_text(sum.energy);
+  }
+  for (const auto& [reason, count] : refusals) {
+    text.append(text.empty() ? "" : "; ").append(quantity(count, "hole"));
+    text.append(" without smooth patch (").append(reason).append(")");
+  }
+  return text;
 }
 
 /// The facets that came, went and were turned, and the vertices that moved: "1 facet of 80.000 m2
@@ -75,7 +115,9 @@ std::string account_of(const repair::RepairSummary& summary) {
   }
   for (const repair::Remedy remedy : summary.remedies) add(std::string(to_string(remedy)), ", ");
   text = "repaired: " + text;
-  const std::string changes = changes_of(summary);
+  std::string changes = patches_of(summary);
+  if (const std::string others = changes_of(summary); !others.empty())
+    changes.append(changes.empty() ? "" : "; ").append(others);
   return changes.empty() ? text : text + " (" + changes + ')';
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/documents/rules.h"
 
-#include <tuple>
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
 
 #include "pipeline/collections/collection_rules.h"
 #include "pipeline/outcome_json.h"
@@ -50,6 +53,46 @@ Status read_rules(const Target& target, pipeline::IngestOptions& options) {
   return Done{};
 }
 
+namespace {
+
+/// A number that a parameter sets, from `least` to `most`.
+struct NumberParameter {
+  const char* name;
+  double least;
+  double most;
+  double* number;
+};
+
+Status read_numbers(const Target& target, std::span<const NumberParameter> parameters) {
+  for (const auto& [name, least, most, number] : parameters) {
+    const std::string* text = target.parameter(name);
+    if (text == nullptr) continue;
+    if (Status read = pipeline::read_number(name, *text, least == 0, most, *number); !read)
+      return read;
+    if (*number >= least) continue;
+    return Error{ErrorCode::invalid_argument,
+                 std::string(name) + " is less than " + std::to_string(least)};
+  }
+  return Done{};
+}
+
+Status read_smooth(const Target& target, repair::SmoothOptions& smooth) {
+  constexpr double kMostDegrees = 180;
+  constexpr double kMostChord = 1000;
+  auto rings = static_cast<double>(smooth.collar.rings);
+  const std::array<NumberParameter, 5> parameters{
+      {{"density", repair::kLeastDensity, repair::kMostDensity, &smooth.density},
+       {"regularity", repair::kLeastDensity, repair::kMostDensity, &smooth.regularity},
+       {"collar", 1, repair::kMostRings, &rings},
+       {"crease", 0, kMostDegrees, &smooth.collar.crease_degrees},
+       {"chord", 0, kMostChord, &smooth.chord_metres}}};
+  if (Status read = read_numbers(target, parameters); !read) return read;
+  smooth.collar.rings = static_cast<int>(rings);
+  return Done{};
+}
+
+}  // namespace
+
 Status read_remedies(const Target& target, std::string_view list, repair::RepairOptions& options) {
   if (const std::string* names = target.parameter(list)) {
     auto remedies = repair::remedies_of(*names);
@@ -59,14 +102,11 @@ Status read_remedies(const Target& target, std::string_view list, repair::Repair
   constexpr double kMostMetres = 1000;
   constexpr double kMostIslands = 5;
   auto islands = static_cast<double>(options.most_islands);
-  for (const auto& [name, most, number] : {std::tuple("weld", kMostMetres, &options.weld_metres),
-                                           {"islands", kMostIslands, &islands}}) {
-    const std::string* text = target.parameter(name);
-    if (text == nullptr) continue;
-    if (Status read = pipeline::read_number(name, *text, true, most, *number); !read) return read;
-  }
+  const std::array<NumberParameter, 2> parameters{
+      {{"weld", 0, kMostMetres, &options.weld_metres}, {"islands", 0, kMostIslands, &islands}}};
+  if (Status read = read_numbers(target, parameters); !read) return read;
   options.most_islands = static_cast<std::size_t>(islands);
-  return Done{};
+  return read_smooth(target, options.smooth);
 }
 
 Status read_submit_rules(const Target& target, pipeline::IngestOptions& options) {
@@ -94,9 +134,11 @@ Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request) {
     options.repair.emplace();
     const Status remedies = read_remedies(request.target, "repair", *options.repair);
     if (!remedies) return remedies.error();
-  } else if (request.target.parameter("weld") != nullptr ||
-             request.target.parameter("islands") != nullptr) {
-    return Error{ErrorCode::invalid_argument, "weld and islands need remedies in repair="};
+  } else {
+    for (const char* name : {"weld", "islands", "density", "regularity", "collar", "crease"}) {
+      if (request.target.parameter(name) == nullptr) continue;
+      return Error{ErrorCode::invalid_argument, std::string(name) + " needs remedies in repair="};
+    }
   }
   auto condition = write_condition(request.request);
   if (!condition) return std::move(condition).error();

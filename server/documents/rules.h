@@ -26,8 +26,8 @@ Result<pipeline::IngestOptions> submit_options(const RoutedRequest& request);
 /// proof, strict. Errors: invalid_argument.
 Status read_rules(const Target& target, pipeline::IngestOptions& options);
 
-/// Reads how solids are repaired: the remedies in the parameter `list`, weld, islands. Errors:
-/// invalid_argument.
+/// Reads how solids are repaired: the remedies in the parameter `list`, weld, islands, and
+/// for smooth patches density, regularity, collar, crease, chord. Errors: invalid_argument.
 Status read_remedies(const Target& target, std::string_view list, repair::RepairOptions& options);
 
 /// The rule for surfaces that are kept: as they came, or closed ones as solids. Errors:

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
 #include <catch2/catch_test_macros.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -40,6 +43,60 @@ TEST_CASE_METHOD(Fixture, "repair mends six of the eleven samples, and says how"
   CHECK(box["repair"]["codes_before"] == Json({302}));
   CHECK(run("validate -q mended.city.jsonl").output.find("5 features of 11 are invalid") !=
         std::string::npos);
+}
+
+TEST_CASE_METHOD(Fixture, "a hole in a mesh gets a smooth patch, and its surface a file") {
+  // A cube of 6 x 6 squares a side without four of them in the middle of its upper side.
+  std::string text;
+  std::map<std::array<int, 3>, int> number_of;
+  std::vector<std::array<int, 3>> places;
+  std::string facets;
+  const auto number = [&](const std::array<int, 3>& place) {
+    const auto [found, is_new] = number_of.emplace(place, static_cast<int>(places.size()) + 1);
+    if (is_new) places.push_back(place);
+    return found->second;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int level : {0, 6}) {
+      for (int a = 0; a < 6; ++a) {
+        for (int b = 0; b < 6; ++b) {
+          if (axis == 2 && level == 6 && a / 2 == 1 && b / 2 == 1) continue;
+          std::array<int, 4> corners{};
+          for (std::size_t i = 0; i < 4; ++i) {
+            std::array<int, 3> place{};
+            place[static_cast<std::size_t>(axis)] = level;
+            place[static_cast<std::size_t>((axis + 1) % 3)] = a + (i == 1 || i == 2 ? 1 : 0);
+            place[static_cast<std::size_t>((axis + 2) % 3)] = b + (i >= 2 ? 1 : 0);
+            corners[i] = number(place);
+          }
+          if (level == 0) std::ranges::reverse(corners);
+          facets += "f";
+          for (const int corner : corners) facets.append(" ").append(std::to_string(corner));
+          facets += "\n";
+        }
+      }
+    }
+  }
+  for (const auto& [x, y, z] : places) {
+    text.append("v ").append(std::to_string(x)).append(" ").append(std::to_string(y));
+    text.append(" ").append(std::to_string(z)).append("\n");
+  }
+  write("open.obj", text + facets);
+  const Ran ran =
+      run("repair open.obj -o closed.obj --remedies smooth --density 0.7 --spline s.json");
+  INFO(ran.output);
+  CHECK(ran.status == 0);
+  CHECK(ran.output.find("solid 0: repaired: smooth (1 hole of 8 edges: ") != std::string::npos);
+  CHECK(ran.output.find("largest turn across the border 0.0 degrees") != std::string::npos);
+  CHECK(run("validate -q closed.obj").status == 0);
+  const Json spline = Json::parse(read("s.json"));
+  CHECK(spline["type"] == "watertight_spline");
+  CHECK(spline["coefficients"].size() == spline["triangles"].size());
+  for (const char* option : {"--density 0", "--density 1e9", "--regularity 0", "--collar 0",
+                             "--collar 11", "--crease 181", "--chord 0"}) {
+    INFO(option);
+    CHECK(run(std::string("repair open.obj -o c.obj --remedies smooth ") + option).status == 2);
+  }
 }
 
 TEST_CASE_METHOD(Fixture, "lists of remedies that are wrong are refused") {

@@ -6,6 +6,7 @@ Reports of all golden samples, of several files at once and of broken input are 
 docs/schema/report-2.schema.json; the schema describes every member, and each member it describes
 occurs in some report. The same reports have every member that val3dity's report browser reads.
 """
+import itertools
 import json
 import pathlib
 import subprocess
@@ -30,6 +31,26 @@ STRIP = """OFF
 0 0 0\n4 0 1\n4 4 0\n0 4 2\n2 2 5\n7 1 3
 3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n3 0 1 5\n3 1 0 2
 """
+
+
+def open_cube():
+    """A cube of 6 x 6 squares a side without four of them in the middle of its upper side, as OFF."""
+    places, facets = {}, []
+    for axis in range(3):
+        for level in (0, 6):
+            for a, b in itertools.product(range(6), repeat=2):
+                if (axis, level, a // 2, b // 2) == (2, 6, 1, 1):
+                    continue
+                corners = []
+                for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                    place = [0, 0, 0]
+                    place[axis], place[(axis + 1) % 3], place[(axis + 2) % 3] = level, a + i, b + j
+                    corners.append(places.setdefault(tuple(place), len(places)))
+                facets.append(corners if level else corners[::-1])
+    lines = [f"OFF\n{len(places)} {len(facets)} 0"]
+    lines += [" ".join(map(str, place)) for place in places]
+    lines += [" ".join(map(str, (4, *corners))) for corners in facets]
+    return "\n".join(lines) + "\n"
 
 
 def reports_of(program, files, kind="json"):
@@ -120,8 +141,11 @@ def main():
         bowl.write_text(BOWL)
         strip = pathlib.Path(folder) / "strip.off"
         strip.write_text(STRIP)
+        cube = pathlib.Path(folder) / "cube.off"
+        cube.write_text(open_cube())
         mended = [root / "examples/invalid.city.jsonl", bowl, strip]
         reports += reports_of(program, mended, "repaired")
+        reports += reports_of(program, [cube, bowl, strip], "smoothed")
         reports += reports_of(program, [broken, unknown])
     if reports[-2]["all_errors"] != [901] or reports[-2]["verdict"] != "undecided":
         failures.append("a broken file is not reported as 901, undecided")

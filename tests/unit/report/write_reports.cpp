@@ -40,19 +40,21 @@ Status add_document(report::FeatureReport& report, const std::string& path) {
   return status ? report.end_document(end) : status;
 }
 
-repair::RepairOptions all_remedies() {
+repair::RepairOptions all_remedies(bool has_smooth) {
   repair::RepairOptions options;
   options.remedies.assign(repair::kAllRemedies.begin(), repair::kAllRemedies.end());
+  if (!has_smooth) std::erase(options.remedies, repair::Remedy::smooth);
+  options.smooth.chord_metres = 0.1;
   options.weld_metres = 0.01;
   return options;
 }
 
-Status add_repaired(report::FeatureReport& report, const std::string& path) {
+Status add_repaired(report::FeatureReport& report, const std::string& path,
+                    const repair::RepairOptions& options) {
   const Bytes bytes = test::read_bytes(path);
   const auto format = formats::detect_format(path, bytes);
   if (!format) return format.error();
-  const auto repaired =
-      pipeline::repair_text(bytes, *format, *format, {}, nullptr, all_remedies(), 1);
+  const auto repaired = pipeline::repair_text(bytes, *format, *format, {}, nullptr, options, 1);
   if (!repaired) return repaired.error();
   Status status = report.begin_document({path.substr(path.rfind('/') + 1), *format});
   if (!status) return status;
@@ -73,14 +75,15 @@ int main(int count, char** arguments) {
   };
   report::ReportHead head;
   head.program_version = "0.1.0";
-  const bool is_repaired = kind.starts_with("repaired");
-  if (is_repaired) head.repair = all_remedies();
+  const bool is_smoothed = kind.starts_with("smoothed");
+  const bool is_repaired = kind.starts_with("repaired") || is_smoothed;
+  if (is_repaired) head.repair = all_remedies(is_smoothed);
   const auto report = kind.ends_with("html") ? report::html_report(sink, head)
                       : kind == "geojson"    ? report::geojson_report(sink, head)
                                              : report::json_report(sink, head);
   for (int i = 2; i < count; ++i) {
-    const Status added =
-        is_repaired ? add_repaired(*report, arguments[i]) : add_document(*report, arguments[i]);
+    const Status added = is_repaired ? add_repaired(*report, arguments[i], *head.repair)
+                                     : add_document(*report, arguments[i]);
     if (!added) return 1;
   }
   return report->finish() ? 0 : 1;

@@ -88,6 +88,27 @@ TEST_CASE_METHOD(ConversionRoutes, "invalid solids come back repaired, and what 
   CHECK(send_body("/repair?remedies=all&to=html", text).body == page.body);
 }
 
+TEST_CASE_METHOD(ConversionRoutes, "holes are closed by smooth patches on request") {
+  const std::string text = test::read_text(test::source_path("examples/invalid.city.jsonl"));
+  const auto report = send_body(
+      "/repair?remedies=smooth&density=0.5&regularity=0.6&collar=1&crease=95&chord=0.1&to=report",
+      text);
+  INFO(report.body);
+  REQUIRE(report.status == 200);
+  const Json json = Json::parse(report.body);
+  CHECK(json["parameters"]["density"] == 0.5);
+  CHECK(json["parameters"]["collar"] == 1);
+  CHECK(json["parameters"]["smooth_chord"] == 0.1);
+  const Json& repair = json["features"][0]["primitives"][0]["repair"];
+  CHECK(repair["outcome"] == "repaired");
+  CHECK((repair["holes"][0].contains("smooth") || repair["holes"][0].contains("not_smooth")));
+  for (const char* wrong : {"density=0.01", "density=101", "regularity=x", "collar=0", "collar=11",
+                            "crease=181", "chord=-1"}) {
+    INFO(wrong);
+    CHECK(send_body(std::string("/repair?remedies=smooth&") + wrong, text).status == 400);
+  }
+}
+
 TEST_CASE_METHOD(ConversionRoutes, "GML is repaired as GML on request, other formats are not") {
   std::string text = test::read_text(test::source_path("tests/data/gml/citygml_2_xlinks.gml"));
   const std::string south = "0,0,0 10,0,0 5,5,10 0,0,0";

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "cli/arguments.h"
+#include "cli/arguments/arguments.h"
 
 namespace watertight::cli {
 namespace {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Prints checksums of filled holes in surfaces over triangulations, whose knots, triangles and
+// Prints checksums of filled holes in surfaces over triangulations and of smooth patches, whose knots, triangles and
 // coefficients depend on every rounding.
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/bytes.h"
 #include "base/checksum.h"
+#include "repair/remedies.h"
 #include "spline/dms_surface.h"
 #include "spline/extend_triangulation.h"
 #include "spline/knot_clouds.h"
@@ -16,6 +19,7 @@
 #include "spline/thin_plate.h"
 #include "tests/builds/fingerprint.h"
 #include "tests/random.h"
+#include "tests/solids/builders.h"
 
 namespace watertight::builds {
 namespace {
@@ -74,9 +78,36 @@ std::string filled_surface(std::uint64_t seed) {
   return surface ? spline::to_json(*surface) : std::string();
 }
 
+/// Prints checksums of the patches over holes in a random surface; false if there is none.
+bool print_patches(std::uint64_t seed) {
+  test::Random random(seed);
+  solids::Shell shell = solids::terrain(random, 8, 1000);
+  std::erase_if(shell, [](const solids::Facet& facet) {
+    return facet[0].size() == 3 && std::ranges::all_of(facet[0], [](const Point& p) { return p.x >= 3000 && p.x <= 5000 && p.y >= 3000 && p.y <= 6000 && p.z > 0; });
+  });
+  repair::EditedSolid solid = repair::edited(solids::solid_of({shell}));
+  repair::FillHolesOptions options;
+  options.smooth.emplace().keeps_surface = true;
+  bool has_patch = false;
+  for (const repair::HoleFill& hole : repair::fill_holes(solid, options)) {
+    has_patch = has_patch || hole.smooth.has_value();
+    std::printf("patch %llu: %zu facets %08x %s %.17g %.17g\n", static_cast<unsigned long long>(seed), hole.facets, crc32c(as_bytes(hole.spline)),
+                hole.smooth_refusal.c_str(), hole.smooth ? hole.smooth->energy : 0, hole.smooth ? hole.smooth->largest_turn : 0);
+  }
+  std::string places;
+  for (const Point& p : solid.vertices) {
+    for (int axis = 0; axis < 3; ++axis) places.append(solid.lattice.world_text(p[axis], axis)).append(" ");
+  }
+  std::printf("vertices %08x\n", crc32c(as_bytes(places)));
+  return has_patch;
+}
+
 }  // namespace
 
 bool print_splines() {
+  bool has_patch = false;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) has_patch = print_patches(seed) || has_patch;
+  if (!has_patch) return false;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const std::string json = filled_surface(seed);
     if (json.empty()) return false;

@@ -109,11 +109,13 @@ std::optional<Flattened> measured(std::vector<Point> places, const Collar& colla
 std::vector<Flattened> flatten(const Collar& collar, std::span<const Triangle> closing,
                                std::span<const Vector3> metres) {
   std::vector<Flattened> maps;
-  for (const auto& places :
-       {along(hole_normal(collar, metres), metres), conformal(collar, closing, metres)}) {
-    if (auto map = measured(places, collar, metres)) maps.push_back(*std::move(map));
-  }
+  const auto add = [&](std::vector<Point> places) {
+    if (auto map = measured(std::move(places), collar, metres)) maps.push_back(*std::move(map));
+  };
+  add(along(hole_normal(collar, metres), metres));
+  add(conformal(collar, closing, metres));
   std::ranges::stable_sort(maps, {}, &Flattened::stretch);
+  if (maps.empty()) add(conformal(collar, {}, metres));  // the filling may be folded
   return maps;
 }
 

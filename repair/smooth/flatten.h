@@ -17,8 +17,9 @@ struct Flattened {
 
 /// Up to two maps in the order of their stretch: along the area vector of the hole, and the
 /// conformal one (spline/plane/conformal_map.h) of the collar with the hole closed by `closing`
-/// (triangles by local numbers, may be empty). Neither turns a triangle of the collar over; exact.
-/// Triangles may still lie on each other. `metres` has the places of the collar's vertices.
+/// (triangles by local numbers, may be empty). Where neither will do, the conformal one of the
+/// collar alone. None turns a triangle of the collar over; exact. Triangles may still lie on each
+/// other. `metres` has the places of the collar's vertices.
 std::vector<Flattened> flatten(const Collar& collar, std::span<const Triangle> closing,
                                std::span<const geometry::Vector3> metres);
 

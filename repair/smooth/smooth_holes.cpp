@@ -81,10 +81,13 @@ std::vector<Triangle> other_triangles(const ShellSurface& surface,
                                       std::span<const ClosedHole> holes,
                                       std::span<const PatchedHole> patched) {
   std::vector<Triangle> triangles(surface.triangles().begin(), surface.triangles().end());
+  auto next = patched.begin();  // in the order of the holes
   for (const ClosedHole& hole : holes) {
-    const auto is_patched = [&](const PatchedHole& one) { return one.hole == &hole; };
-    if (std::ranges::any_of(patched, is_patched)) continue;
-    triangles.insert(triangles.end(), hole.triangles.begin(), hole.triangles.end());
+    if (next != patched.end() && next->hole == &hole) {
+      ++next;
+    } else {
+      triangles.insert(triangles.end(), hole.triangles.begin(), hole.triangles.end());
+    }
   }
   return triangles;
 }

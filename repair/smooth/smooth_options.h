@@ -29,7 +29,8 @@ struct SmoothOptions {
   double chord_metres = 0;
   bool keeps_lattice = false;  // new vertices are rounded to the lattice of the solid as it is
   bool keeps_surface = false;  // fill SmoothPatch::spline
-  std::size_t most_triangles = 10'000;  // of the domain
+  /// Of the domain. New vertices stand farther apart where there would be more.
+  std::size_t most_triangles = 3000;
   std::size_t most_vertices = 200'000;  // of the patch
 };
 
@@ -37,7 +38,7 @@ struct SmoothOptions {
 struct SmoothMeasures {
   std::size_t vertices = 0;  // new ones, at which the surface was sampled
   std::size_t unknowns = 0;
-  double energy = 0;             // metres^2 / area of the flat domain in metres^2
+  double energy = 0;             // spline/thin_plate.h, of the hole; without a unit
   double condition = 0;          // estimate, of the system of the patch
   double stretch = 1;            // Flattened::stretch
   double value_jump = 0;         // of the surface across the border

@@ -43,8 +43,8 @@ struct PatchDomain {
   std::size_t collar_triangles = 0;
 };
 
-Result<PatchDomain> domain_of(const Collar& collar, const Flattened& flat,
-                              const SmoothOptions& options) {
+Result<PatchDomain> domain_with(double density, const Collar& collar, const Flattened& flat,
+                                const SmoothOptions& options) {
   std::vector<std::vector<Point>> polygons;
   std::size_t border = 0;
   for (const Ring& loop : collar.loops) {
@@ -53,7 +53,7 @@ Result<PatchDomain> domain_of(const Collar& collar, const Flattened& flat,
     border += loop.size();
   }
   spline::ExtendOptions extending;
-  extending.density = options.density;
+  extending.density = density;
   extending.regularity = options.regularity;
   extending.smoothing_rounds = 2;
   extending.most_vertices = options.most_triangles;
@@ -68,7 +68,21 @@ Result<PatchDomain> domain_of(const Collar& collar, const Flattened& flat,
     for (Index& corner : t) corner += corner < border ? 0 : shift;
     domain.triangles.push_back(t);
   }
-  return domain;
+  if (domain.triangles.size() <= options.most_triangles) return domain;
+  return Error{ErrorCode::limit_exceeded,
+               "the domain has more than " + std::to_string(options.most_triangles) + " triangles"};
+}
+
+/// The domain with the density that was asked for, or with a coarser one where it is too large.
+Result<PatchDomain> domain_of(const Collar& collar, const Flattened& flat,
+                              const SmoothOptions& options) {
+  double density = options.density;
+  for (;;) {
+    auto domain = domain_with(density, collar, flat, options);
+    if (domain || domain.error().code != ErrorCode::limit_exceeded) return domain;
+    density *= 2;
+    if (density > kMostDensity) return domain;
+  }
 }
 
 /// Knots keep this share of the shortest edge from their vertex; thin triangles of the hole, which
@@ -211,12 +225,8 @@ std::variant<FlatHole, Refused> flat_hole(const Collar& collar, std::span<const 
                   "a triangle of the collar turns over in the plane"};
   for (const Flattened& flat : maps) {
     auto patch = domain_of(collar, flat, options);
-    const bool is_too_large = patch ? patch->triangles.size() > options.most_triangles
-                                    : patch.error().code == ErrorCode::limit_exceeded;
-    if (is_too_large)
-      return Refused{
-          SmoothRefusal::too_large,
-          "the domain has more than " + std::to_string(options.most_triangles) + " triangles"};
+    if (!patch && patch.error().code == ErrorCode::limit_exceeded)
+      return Refused{SmoothRefusal::too_large, patch.error().message};
     if (!patch) {
       refused = not_flattenable(patch.error());
       continue;

@@ -3,6 +3,10 @@ SELECT name, wt_is_valid(ewkb) AS valid, wt_repair_report(ewkb)->>'outcome' AS b
        wt_repair_report(ewkb, 'all') - 'holes' AS by_all
 FROM solids ORDER BY name;
 SELECT wt_repair_report(ewkb, 'fill')->'holes' AS holes FROM solids WHERE name = 'open';
+-- A smooth patch, or a filling and why there is none.
+SELECT wt_repair_report(ewkb, 'smooth')->'holes'->0->'not_smooth'->>'reason' AS reason,
+       wt_is_valid(wt_repair(ewkb, 'smooth')) AS valid
+FROM solids WHERE name = 'open';
 -- A valid solid stays as it is, byte for byte; a repaired one is valid, and stays then.
 SELECT name, wt_repair(ewkb) = ewkb AS same FROM solids WHERE wt_is_valid(ewkb) ORDER BY name;
 SELECT name, wt_is_valid(wt_repair(ewkb, 'all')) AS valid,

@@ -230,6 +230,9 @@ TEST_CASE("limits of a patch give the flat filling, with the reason") {
   options.smooth.collar.most_triangles = 5;
   CHECK(only_hole(repair(open, nullptr, options)).smooth_refusal == "too_large");
   options = smoothly();
+  options.smooth.most_triangles = 250;  // collar and border need 200: a coarser domain
+  CHECK(only_hole(repair(open, nullptr, options)).method == "smooth");
+  options = smoothly();
   options.smooth.density = 1e9;  // no new vertex in the domain
   const Repaired coarse = repair(open, nullptr, options);
   CHECK(coarse.outcome == Outcome::repaired);

@@ -31,7 +31,7 @@ struct Samples {
   std::vector<spline::SurfacePoint> values;
 };
 
-/// Puts a vertex into the middle of edges. Triangles without border keep none.
+/// Divides triangles at the vertices that stand in the middle of their edges.
 class EdgeHalver {
  public:
   EdgeHalver(Samples& samples, std::map<Edge, Index> middles)

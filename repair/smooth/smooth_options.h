@@ -29,7 +29,8 @@ struct SmoothOptions {
   double chord_metres = 0;
   bool keeps_lattice = false;  // new vertices are rounded to the lattice of the solid as it is
   bool keeps_surface = false;  // fill SmoothPatch::spline
-  /// Of the domain. New vertices stand farther apart where there would be more.
+  /// The domain has this many at most; its new vertices stand farther apart where it would have
+  /// more.
   std::size_t most_triangles = 3000;
   std::size_t most_vertices = 200'000;  // of the patch
 };

@@ -79,9 +79,8 @@ struct ItemRequest {
   /// Whether the type of the answer is that of GeoJSON, but it is JSON-FG.
   bool is_profile() const { return form.is_json_fg && format.type == kGeoJson; }
   bool is_geo_json() const { return format.parameter == "geojson" || form.is_json_fg; }
-  std::string key(std::uint64_t version) const {
-    return collection + '/' + id + '/' + etag_of(version, representation());
-  }
+  /// The key of the newest answer that was made.
+  std::string key() const { return collection + '/' + id + '/' + representation(); }
 };
 
 Result<Bytes> blob_of(const StoredFeature& feature, const std::string& text, const Limits& limits) {
@@ -181,7 +180,7 @@ Response represented(StoredFeature feature, const ItemRequest& item,
                      const CancelPoll& is_cancelled) {
   const std::uint64_t version = feature.version;
   const std::vector<HeaderField> headers{
-      {"ETag", etag_of(version, item.representation())},
+      {"ETag", etag_of(version, item.representation())},  // first, for cached()
       {"Vary", "Accept"},
       {"Content-Crs", content_crs(item.form.system, feature.srid)}};
   auto body = represent(std::move(feature), item, is_cancelled);
@@ -195,17 +194,35 @@ Response represented(StoredFeature feature, const ItemRequest& item,
   const std::string_view type = item.format.type == kHtml ? kHtmlPage : item.format.type;
   Response response{200, std::string(type), std::string(as_text(*body)), headers};
   if (RepresentationCache* cache = item.service.cache) {
-    cache->keep(item.key(version), std::make_shared<const Response>(response));
+    cache->keep(item.key(), std::make_shared<const Response>(response));
   }
   return linked(item, in_range(item.message, std::move(response)));
+}
+
+/// Whether the cache has an answer, of this version of the feature or an older one.
+bool is_kept(const ItemRequest& item) {
+  return item.service.cache != nullptr && item.service.cache->find(item.key()) != nullptr;
 }
 
 /// The answer that the cache has for this version of the feature.
 std::optional<Response> cached(const ItemRequest& item, std::uint64_t version) {
   if (item.service.cache == nullptr) return std::nullopt;
-  const auto kept = item.service.cache->find(item.key(version));
-  if (!kept) return std::nullopt;
+  const auto kept = item.service.cache->find(item.key());
+  if (!kept || kept->headers.front().value != etag_of(version, item.representation())) {
+    return std::nullopt;
+  }
   return linked(item, in_range(item.message, *kept));
+}
+
+/// The answer that needs the feature's version alone: that of the cache, 304 or 412 by the request's
+/// preconditions, or an error. One query, which a request for what nobody has asked for goes without.
+std::optional<Response> answered_by_version(const ItemRequest& item) {
+  const auto version = item.service.store->version(item.collection, item.id);
+  if (!version) return to_response(to_problem(version.error()));
+  if (auto unneeded = unless_needed(item.message, etag_of(*version, item.representation()))) {
+    return unneeded;
+  }
+  return cached(item, *version);
 }
 
 /// Reads the feature and makes its representation; leaves a large one to the lane for that.
@@ -275,18 +292,18 @@ Response get_item(const RoutedRequest& request) {
                          std::move(form),
                          request.request,
                          links_of_item(request, is_json_fg)};
-  const auto version = request.service.store->version(item.collection, item.id);
-  if (!version) return to_response(to_problem(version.error()));
-  auto unneeded = unless_needed(request.request, etag_of(*version, item.representation()));
-  if (unneeded) return *std::move(unneeded);
-  if (auto kept = cached(item, *version)) return *std::move(kept);
+  if (has_precondition(request.request) || is_kept(item)) {
+    if (auto answered = answered_by_version(item)) return *std::move(answered);
+  }
   Response response;
-  response.further = std::make_shared<const FurtherWork>(FurtherWork{
-      Lane::small, item.key(*version), [item, version = *version](const CancelPoll& is_cancelled) {
-        // A request for the same may have been answered meanwhile.
-        if (auto kept = cached(item, version)) return *std::move(kept);
-        return read_and_represent(item, is_cancelled);
-      }});
+  response.further = std::make_shared<const FurtherWork>(
+      FurtherWork{Lane::small, item.key(), [item](const CancelPoll& is_cancelled) {
+                    // A request for the same may have been answered meanwhile.
+                    if (is_kept(item)) {
+                      if (auto answered = answered_by_version(item)) return *std::move(answered);
+                    }
+                    return read_and_represent(item, is_cancelled);
+                  }});
   return response;
 }
 

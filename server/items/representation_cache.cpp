@@ -23,7 +23,11 @@ void RepresentationCache::keep(const std::string& key, Answer answer) {
   const std::size_t size = size_of(entry);
   if (size > most_ / 8) return;
   const std::lock_guard lock(mutex_);
-  if (places_.contains(key)) return;
+  if (const auto former = places_.find(key); former != places_.end()) {
+    bytes_ -= size_of(*former->second);
+    entries_.erase(former->second);
+    places_.erase(former);
+  }
   entries_.push_front(std::move(entry));
   places_[key] = entries_.begin();
   bytes_ += size;

@@ -17,8 +17,8 @@
 namespace watertight::server {
 
 /// Keeps whole answers by key, at most `bytes` of them together; the one that was not used for the
-/// longest time goes first. A key names the version of its feature, so that nothing in the cache is
-/// ever out of date. Thread-safe.
+/// longest time goes first. A key or the answer names the version of the feature, so that nobody
+/// takes an answer that is out of date. Thread-safe.
 class RepresentationCache {
  public:
   using Answer = std::shared_ptr<const Response>;
@@ -26,7 +26,8 @@ class RepresentationCache {
   explicit RepresentationCache(std::size_t bytes) : most_(bytes) {}
   /// The answer that was kept under `key`; null if there is none.
   Answer find(const std::string& key);
-  /// Keeps an answer, unless it is larger than an eighth of the cache.
+  /// Keeps an answer, in the place of that with the same key, unless it is larger than an eighth of
+  /// the cache.
   void keep(const std::string& key, Answer answer);
 
  private:

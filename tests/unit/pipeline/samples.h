@@ -53,7 +53,8 @@ inline std::string sequence(const std::vector<std::string>& features) {
 class MemoryStore : public SolidStore {
  public:
   bool is_away = false;
-  std::size_t gets = 0;  // how often get() was called
+  std::size_t gets = 0;           // how often get() was called
+  std::size_t version_reads = 0;  // how often version() was called
 
   Status ping() override {
     if (is_away) return away();
@@ -315,6 +316,7 @@ class MemoryStore : public SolidStore {
   }
   Result<std::uint64_t> version(const std::string& collection, const std::string& id) override {
     const std::lock_guard lock(mutex_);
+    ++version_reads;
     if (is_away) return away();
     const std::uint64_t found = version_of(collection, id);
     if (found == 0) return Error{ErrorCode::not_found, "no feature " + id};

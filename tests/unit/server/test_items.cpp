@@ -82,6 +82,19 @@ TEST_CASE("a cache keeps what was used last, and nothing larger than an eighth o
   CHECK_FALSE(cache.find("b"));
   cache.keep("large", answer(13'000));
   CHECK_FALSE(cache.find("large"));
+  const auto newer = answer(11'000);
+  cache.keep("i", newer);
+  CHECK(cache.find("i") == newer);
+  CHECK(cache.find("h"));
+}
+
+TEST_CASE_METHOD(Items, "an item that nobody has asked for is read at once, without its version") {
+  const std::size_t versions = store.version_reads;
+  CHECK(item().status == 200);
+  CHECK(store.version_reads == versions);
+  CHECK(item().status == 200);
+  CHECK(store.version_reads == versions + 1);
+  CHECK(item({{"if-none-match", field(item(), "ETag")}}).status == 304);
 }
 
 TEST_CASE_METHOD(Items, "preconditions of a read are kept") {

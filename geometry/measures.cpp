@@ -82,33 +82,96 @@ int lowest_bit(double value) {
   return exponent;
 }
 
-mpz_class big_sum_of_determinants(std::span<const Point> vertices,
-                                  std::span<const Triangle> triangles, int unit) {
-  const auto big = [&](Index vertex, int axis) {
-    const double coordinate = vertices[vertex][axis];
-    if (coordinate == 0) return mpz_class(0);
-    int exponent = 0;
-    const double fraction = std::frexp(coordinate, &exponent);
-    mpz_class value(static_cast<long>(std::ldexp(fraction, 53)));
-    const int shift = exponent - 53 - unit;
-    if (shift >= 0) return mpz_class(value << static_cast<unsigned long>(shift));
-    return mpz_class(value >> static_cast<unsigned long>(-shift));  // only zero bits are lost
-  };
-  const std::array origin{big(triangles[0][0], 0), big(triangles[0][0], 1),
-                          big(triangles[0][0], 2)};
-  mpz_class total = 0;
-  for (const Triangle& triangle : triangles) {
-    std::array<std::array<mpz_class, 3>, 3> p;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        p[corner][axis] = big(triangle[corner], static_cast<int>(axis)) - origin[axis];
+/// A coordinate in units of 2^unit, of which it is a multiple.
+mpz_class in_units(double coordinate, int unit) {
+  if (coordinate == 0) return 0;
+  int exponent = 0;
+  const double fraction = std::frexp(coordinate, &exponent);
+  mpz_class value(static_cast<long>(std::ldexp(fraction, 53)));
+  const int shift = exponent - 53 - unit;
+  if (shift >= 0) return mpz_class(value << static_cast<unsigned long>(shift));
+  return mpz_class(value >> static_cast<unsigned long>(-shift));  // only zero bits are lost
+}
+
+/// The vertices of triangles, each once, by the way from the first of all to them.
+class BigVertices {
+ public:
+  BigVertices(std::span<const Point> vertices, std::span<const Triangle> triangles, int unit) {
+    for (const Triangle& triangle : triangles) {
+      numbers_.insert(numbers_.end(), triangle.begin(), triangle.end());
+    }
+    std::sort(numbers_.begin(), numbers_.end());
+    numbers_.erase(std::unique(numbers_.begin(), numbers_.end()), numbers_.end());
+    const Point& origin = vertices[triangles[0][0]];
+    for (int axis = 0; axis < 3; ++axis) {
+      const mpz_class start = in_units(origin[axis], unit);
+      for (const Index vertex : numbers_) {
+        ways_[static_cast<std::size_t>(axis)].push_back(in_units(vertices[vertex][axis], unit) -
+                                                        start);
       }
     }
-    total += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
-             p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
-             p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+  }
+
+  /// The place of a vertex in the lists.
+  std::size_t place(Index vertex) const {
+    return static_cast<std::size_t>(std::lower_bound(numbers_.begin(), numbers_.end(), vertex) -
+                                    numbers_.begin());
+  }
+  mpz_srcptr way(std::size_t place, std::size_t axis) const {
+    return ways_[axis][place].get_mpz_t();
+  }
+
+ private:
+  std::vector<Index> numbers_;
+  std::array<std::vector<mpz_class>, 3> ways_;
+};
+
+mpz_class big_sum_of_determinants(std::span<const Point> vertices,
+                                  std::span<const Triangle> triangles, int unit) {
+  const BigVertices big(vertices, triangles, unit);
+  mpz_class total = 0;
+  mpz_class minor;  // one number for all triangles: GMP takes memory for it once
+  for (const Triangle& triangle : triangles) {
+    const std::size_t a = big.place(triangle[0]);
+    const std::size_t b = big.place(triangle[1]);
+    const std::size_t c = big.place(triangle[2]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t next = (axis + 1) % 3;
+      const std::size_t last = (axis + 2) % 3;
+      mpz_mul(minor.get_mpz_t(), big.way(b, next), big.way(c, last));
+      mpz_submul(minor.get_mpz_t(), big.way(b, last), big.way(c, next));
+      mpz_addmul(total.get_mpz_t(), big.way(a, axis), minor.get_mpz_t());
+    }
   }
   return total;
+}
+
+/// The sign of the volume, unless rounded numbers do not show it.
+std::optional<int> sign_by_doubles(std::span<const Point> vertices,
+                                   std::span<const Triangle> triangles) {
+  if (triangles.empty()) return 0;
+  const Point& origin = vertices[triangles[0][0]];
+  double total = 0;
+  double reach = 0;  // the sum of the products of which determinants are made
+  for (const Triangle& triangle : triangles) {
+    std::array<Point, 3> way;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Point& vertex = vertices[triangle[corner]];
+      way[corner] = {vertex.x - origin.x, vertex.y - origin.y, vertex.z - origin.z};
+    }
+    const auto& [a, b, c] = way;
+    total += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) +
+             a.z * (b.x * c.y - b.y * c.x);
+    reach += std::abs(a.x) * (std::abs(b.y * c.z) + std::abs(b.z * c.y)) +
+             std::abs(a.y) * (std::abs(b.z * c.x) + std::abs(b.x * c.z)) +
+             std::abs(a.z) * (std::abs(b.x * c.y) + std::abs(b.y * c.x));
+  }
+  // A determinant is wrong by less than 8 roundings of its reach, a sum of n numbers by less than
+  // n roundings; twice as much allows for the roundings of the reach itself. Products below 2^-500
+  // could have lost digits by underflow.
+  const double error = (2 * static_cast<double>(triangles.size()) + 20) * 0x1p-53 * reach;
+  if (!(std::isfinite(reach) && std::abs(total) > error + 0x1p-500)) return std::nullopt;
+  return total > 0 ? 1 : -1;
 }
 
 /// Six times the signed volume in lattice units, exactly.
@@ -177,6 +240,7 @@ std::int64_t euler_characteristic(const Solid& solid, Index shell) {
 }  // namespace
 
 int volume_sign(std::span<const Point> vertices, std::span<const Triangle> triangles) {
+  if (const auto sign = sign_by_doubles(vertices, triangles)) return *sign;
   return sgn(exact_six_volume(vertices, triangles).numerator);
 }
 

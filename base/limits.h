@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "base/cancel.h"
+
 namespace watertight {
 
 /// The memory for an input is proportional to its bytes, and constants besides: `text_solids`,
@@ -25,6 +27,10 @@ struct Limits {
   std::uint64_t expanded = 64ULL << 20;   // see expanded_from()
   std::uint32_t nesting = 64;             // the deepest nesting of arrays and objects in a document
   std::uint64_t findings = 10'000;  // the most findings kept in a report; more are only counted
+  const CancelPoll* cancel = nullptr;  // ends the work by ErrorCode::cancelled; null: nothing does
+
+  bool is_cancelled() const { return cancel != nullptr && *cancel && (*cancel)(); }
+  CancelPoll poll() const { return cancel == nullptr ? CancelPoll{} : *cancel; }
 
   /// The most solids, unreadable parts included, of a document with so many bytes of text. A closed
   /// solid takes more than 64 bytes; without facets it takes three, and a report of kilobytes.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/bytes.h"
+#include "base/cancel.h"
 #include "base/limits.h"
 #include "geometry/valid_solid.h"
 
@@ -40,10 +41,11 @@ struct EncodeOptions {
   std::uint8_t models = kModelNumber;  // the set of priors (codec/page/model_sets.h)
   /// A certificate whose Steiner vertices mode bitmap stores (the paper's setting), or null.
   const delaunay::Certificate* certificate = nullptr;
+  const CancelPoll* cancel = nullptr;  // ends the work; null: nothing does
 };
 
 /// Encodes a solid, decodes the bytes, compares, and only then returns them (verify-after-write).
-/// Errors: not_encodable if the mode cannot hold the solid (automatic always can).
+/// Errors: not_encodable if the mode cannot hold the solid (automatic always can); cancelled.
 Result<Bytes> encode(const ValidSolid& solid, const EncodeOptions& options = {});
 
 /// The header and the counts of a blob and the sizes of its parts, for `info` and `bench/ratio`.
@@ -80,7 +82,7 @@ struct Decoded {
 /// Decodes a blob. Trusts nothing: checks limits before it allocates, bounds every loop, checks the
 /// structure and the checksum. A blob that decodes is a well-formed oriented boundary, not proven
 /// valid: validate when the source is not trusted. Errors: malformed (with byte offset),
-/// unsupported (version, mode), limit_exceeded.
+/// unsupported (version, mode), limit_exceeded, cancelled.
 Result<Decoded> decode(ByteView blob, const Limits& limits = {});
 
 /// Decodes a blob and returns its description only. Errors: those of decode().

@@ -26,6 +26,8 @@ constexpr std::uint32_t kTin = 16;
 constexpr std::uint32_t kTriangle = 17;
 constexpr std::uint32_t kSolid = 101;  // the number that SFCGAL gives its Solid; PostGIS has none
 
+constexpr std::uint32_t kFacetsBetweenPolls = 4096;
+
 class EwkbReader {
  public:
   EwkbReader(ByteView bytes, const Limits& limits) : reader_(bytes), limits_(limits) {}
@@ -129,6 +131,9 @@ class EwkbReader {
     auto polygon_count = count(9, "polygons");
     if (!polygon_count) return std::move(polygon_count).error();
     for (std::uint32_t i = 0; i < *polygon_count; ++i) {
+      if (i % kFacetsBetweenPolls == 0 && limits_.is_cancelled()) {
+        return Error{ErrorCode::cancelled, "the reading was cancelled"};
+      }
       auto type = head();
       if (!type) return std::move(type).error();
       if (*type != kPolygon && *type != kTriangle) return wrong("a facet is not a POLYGON Z");

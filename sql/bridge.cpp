@@ -47,8 +47,9 @@ void encode_into(const wt_job& job, wt_reply* reply) {
   const auto examined = examine(job, call, reply);
   if (!examined) return;
   if (!examined->inspection.certified) return fail_invalid(examined->inspection.report, reply);
-  const Result<Bytes> blob = encode(examined->inspection.certified->solid);
-  if (!blob) return fail(reply, blob.error());
+  const Result<Bytes> blob =
+      encode(examined->inspection.certified->solid, {.cancel = &call.poll()});
+  if (!blob) return fail(reply, call.of_reading(blob.error()));
   if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
   answer(reply, *blob);
 }
@@ -94,7 +95,7 @@ void rules_into(const wt_job& job, wt_reply* reply) {
 /// Answers with the value of a solid and its blob.
 void value_into(const CallLimits& call, const Solid& solid, const Result<Bytes>& blob,
                 wt_reply* reply) {
-  if (!blob) return fail(reply, blob.error());
+  if (!blob) return fail(reply, call.of_reading(blob.error()));
   const Result<Bytes> value = make_value(solid, *blob);
   if (!value) return fail(reply, value.error());
   if (const Status in_time = call.check(); !in_time) return fail(reply, in_time.error());
@@ -108,7 +109,7 @@ void solid_of_read(const wt_job& job, const CallLimits& call, Result<SubmittedSo
   if (!examined) return;
   if (!examined->inspection.certified) return fail_invalid(examined->inspection.report, reply);
   const ValidSolid& solid = examined->inspection.certified->solid;
-  value_into(call, solid.solid(), encode(solid), reply);
+  value_into(call, solid.solid(), encode(solid, {.cancel = &call.poll()}), reply);
 }
 
 /// Answers a blob with its value.

@@ -95,6 +95,7 @@ void answer(wt_reply* reply, ByteView bytes) {
 
 Limits CallLimits::of_input() const {
   Limits limits;
+  limits.cancel = &poll_;
   if (job_.max_memory == 0) return limits;
   const std::uint64_t elements = memory_bytes() / kBytesPerElement;
   limits.bytes = std::min(limits.bytes, memory_bytes());
@@ -113,6 +114,9 @@ Status CallLimits::check() const {
 }
 
 Error CallLimits::of_reading(Error error) const {
+  if (error.code == ErrorCode::cancelled) {
+    if (const Status in_time = check(); !in_time) return in_time.error();
+  }
   const Limits built_in;
   const bool is_setting = error.code == ErrorCode::limit_exceeded && job_.max_memory > 0 &&
                           of_input().facets < built_in.facets;

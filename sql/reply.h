@@ -44,8 +44,10 @@ inline ByteView bytes_of(const wt_job& job) { return {job.bytes, job.size}; }
 class CallLimits {
  public:
   explicit CallLimits(const wt_job& job) : job_(job) {}
+  CallLimits(const CallLimits&) = delete;  // limits and polls that it gave refer to it
+  CallLimits& operator=(const CallLimits&) = delete;
 
-  /// The limits of what is read, within the built-in ones.
+  /// The limits of what is read, within the built-in ones; they end the work when it must end.
   Limits of_input() const;
 
   std::uint64_t memory_bytes() const { return std::uint64_t{job_.max_memory} << 20; }
@@ -54,9 +56,7 @@ class CallLimits {
     return job_.max_seconds > 0 && Clock::now() - start_ >= std::chrono::seconds(job_.max_seconds);
   }
 
-  CancelPoll poll() const {
-    return [this] { return is_late() || is_interrupted(); };
-  }
+  const CancelPoll& poll() const { return poll_; }
 
   /// The reason why the call must end now, if it must.
   Status check() const;
@@ -70,6 +70,7 @@ class CallLimits {
 
   const wt_job& job_;
   Clock::time_point start_ = Clock::now();
+  CancelPoll poll_ = [this] { return is_late() || is_interrupted(); };
 };
 
 }  // namespace watertight::sql

@@ -14,6 +14,10 @@ namespace {
 constexpr std::uint32_t kHalf = 32768;
 constexpr std::size_t kWindow = 4;  // the number of bytes that a reader keeps ahead
 
+/// Between two questions whether the work is cancelled lie so many decisions as have this cost: less
+/// than a millisecond.
+constexpr std::uint64_t kCostOfPause = std::uint64_t{4096} << kCostBits;
+
 /// The last bytes of a stream: the shortest ones that, followed by zeros, lie in [low, high]; of
 /// those the smallest.
 struct Tail {
@@ -80,6 +84,19 @@ std::uint32_t EntropyStream::next_byte() {
   return byte;
 }
 
+void EntropyStream::heed(const Limits& limits) {
+  cancel_ = limits.cancel;
+  if (cancel_ != nullptr) pause_ = cost_;
+}
+
+bool EntropyStream::is_over() const {
+  if (cost_ >= limit_) return true;
+  if (cancel_ == nullptr) return false;
+  if (*cancel_ && (*cancel_)()) return true;
+  pause_ = std::min(limit_, cost_ + kCostOfPause);
+  return false;
+}
+
 void EntropyStream::shift_out() {
   while (((low_ ^ high_) >> 24) == 0) {
     if (direction_ == Direction::write) {
@@ -120,6 +137,7 @@ bool EntropyStream::code_known(bool value, std::uint32_t ones_of_65536) {
 void EntropyStream::append(const EntropyStream& recorder) {
   WATERTIGHT_ASSERT(!is_reading() && recorder.is_recording_);
   for (const Decision& decision : recorder.decisions_) {
+    if (failed()) return;
     part_ = decision.part;
     code(decision.value, decision.ones_of_65536);
   }

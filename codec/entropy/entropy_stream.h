@@ -14,6 +14,7 @@
 
 #include "base/assert.h"
 #include "base/bytes.h"
+#include "base/limits.h"
 
 namespace watertight::codec {
 
@@ -31,7 +32,7 @@ class EntropyStream {
   /// A meter fails once its cost reaches `limit`, so that whoever looks for less can stop.
   static EntropyStream meter(std::uint64_t limit = ~std::uint64_t{0}) {
     EntropyStream stream(Direction::measure, {});
-    stream.limit_ = limit;
+    stream.limit_ = stream.pause_ = limit;
     return stream;
   }
   /// A meter that also keeps its decisions, for append(). Memory: 4 bytes a decision.
@@ -86,7 +87,11 @@ class EntropyStream {
   /// reader that runs past the end of its bytes fails by itself. Callers bound their loops, and ask
   /// failed() in every loop that could be long.
   void fail() { failed_ = true; }
-  bool failed() const { return failed_ || cost_ >= limit_; }
+  bool failed() const { return failed_ || (cost_ >= pause_ && is_over()); }
+
+  /// Makes failed() ask `limits.cancel` now and then, and be true once that is true. A reader without
+  /// costs never asks.
+  void heed(const Limits& limits);
 
   /// When reading, the number of bytes taken so far, including the few that the coder reads ahead.
   std::size_t position() const { return std::min(position_, source_.size()); }
@@ -120,6 +125,8 @@ class EntropyStream {
   std::uint32_t code_chunk(std::uint32_t value, int count);
   void shift_out();
   std::uint32_t next_byte();
+  /// Whether the limit is reached or the work cancelled, at a pause.
+  bool is_over() const;
 
   Direction direction_;
   bool failed_ = false;
@@ -132,6 +139,8 @@ class EntropyStream {
   ByteView source_;
   Bytes bytes_;
   std::uint64_t limit_ = ~std::uint64_t{0};
+  mutable std::uint64_t pause_ = ~std::uint64_t{0};  // the cost from which failed() looks further
+  const CancelPoll* cancel_ = nullptr;
   std::uint64_t cost_ = 0;
   StreamCosts costs_{};
   std::size_t part_ = 0;

@@ -31,12 +31,14 @@ Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits) {
   return nodes;
 }
 
-Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes) {
+Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes,
+                                                    const Limits& limits) {
   if (!has_storable_delaunay(nodes.points)) {
     return Error{ErrorCode::malformed, "coordinates outside the range of mode bitmap"};
   }
   auto delaunay =
-      delaunay::canonical_delaunay(nodes.points, storable_tetrahedra(nodes.points.size()));
+      delaunay::canonical_delaunay(nodes.points, storable_tetrahedra(nodes.points.size()),
+                                   limits.poll());
   if (!delaunay) return Error{ErrorCode::malformed, delaunay.error().message};
   if (delaunay->tetrahedra.empty()) {
     return Error{ErrorCode::malformed, "the vertices of a bitmap blob span no volume"};
@@ -88,7 +90,7 @@ Result<SolidArrays> complete_boundary(const BitmapSections& sections, const Node
 Result<Composition> compose(const BitmapSections& sections, const Limits& limits) {
   auto nodes = read_nodes(sections, limits);
   if (!nodes) return nodes.error();
-  auto delaunay = create_delaunay(*nodes);
+  auto delaunay = create_delaunay(*nodes, limits);
   if (!delaunay) return delaunay.error();
   auto marks = read_bitmap(sections, *delaunay);
   if (!marks) return marks.error();

@@ -334,6 +334,7 @@ class OptionTrials {
 
   Status attempt(const VertexOptions& options) {
     EntropyStream meter = EntropyStream::meter();
+    meter.heed(limits_);
     const BankTrial trial(models_, surface_.positions.size());
     IntegerSolid unused;
     SurfaceCoder coder(meter, models_, memory_, limits_);

@@ -99,7 +99,8 @@ Status code_solid(EntropyStream& stream, ModelBank& models, const PageMemory& me
       return Error{failure, "the solid is too large for its grid"};
     }
   }
-  const auto delaunay = delaunay::canonical_delaunay(points, max_tetrahedra(points.size()));
+  const auto delaunay =
+      delaunay::canonical_delaunay(points, max_tetrahedra(points.size()), limits.poll());
   if (!delaunay) return Error{failure, delaunay.error().message};
   if (delaunay->tetrahedra.empty()) return Error{failure, "the vertices span no volume"};
 

@@ -18,6 +18,10 @@
 namespace watertight::codec {
 namespace {
 
+/// A stream that is cancelled ends as a malformed one does, or as no mode that holds the solid; this
+/// is the error then.
+Error cancelled() { return {ErrorCode::cancelled, "the blob is not wanted any more"}; }
+
 constexpr std::uint8_t kSolidMagic[2] = {'W', 'T'};
 constexpr std::uint8_t kPageFlag = 0x80;  // this bit of the version byte marks a page
 constexpr std::size_t kHeaderBytes = 4;
@@ -105,6 +109,7 @@ Result<std::unique_ptr<Draft>> complete(const SolidCoder& coder, PageSolid& soli
       if (!draft->decisions.is_recorder()) draft.reset();
       return draft;
     }
+    if (coder.is_cancelled()) return cancelled();
     const auto mode = choose_plain(solid, plan);
     if (!mode) return mode.error();
     plan.mode = *mode;
@@ -185,7 +190,8 @@ Frame frame_of(const Solid& solid, const Acceptance& acceptance) {
 }
 
 Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, PageKind kind,
-                               const delaunay::Certificate* certificate) {
+                               const delaunay::Certificate* certificate,
+                               const CancelPoll* cancel) {
   auto models = ModelSet::make(page.models);
   if (!models) return models.error();
   const Limits none{.bytes = ~std::uint64_t{0},
@@ -193,8 +199,10 @@ Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, Pag
                     .facets = kNone,
                     .rings = kNone,
                     .shells = kNone,
-                    .claimed = ~std::uint64_t{0}};
+                    .claimed = ~std::uint64_t{0},
+                    .cancel = cancel};
   EntropyStream stream = EntropyStream::writer();
+  stream.heed(none);
   if (kind == PageKind::page) stream.code_uniform(page.solids.size() - 1, kMaxPageSolids);
   if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.frame); !status) {
     return status.error();
@@ -251,13 +259,14 @@ Result<StoredPage> read_page_bytes(ByteView bytes, PageKind kind, const Limits& 
   auto models = ModelSet::make(*number);
   if (!models) return models.error();
   EntropyStream stream = EntropyStream::reader(reader.take(size));
+  stream.heed(limits);
   for (std::size_t i = 0; i < checksum_bytes(kind); ++i) {
     page.checksum |= static_cast<std::uint32_t>(reader.u8()) << (8 * i);
   }
   const std::uint64_t count =
       kind == PageKind::page ? stream.code_uniform(0, kMaxPageSolids) + 1 : 1;
   if (auto status = code_frame(stream, (*models)[ModelPart::frame], page.contents.frame); !status) {
-    return status.error();
+    return limits.is_cancelled() ? cancelled() : status.error();
   }
   page.frame_cost = stream.cost();
   SolidCoder coder(stream, *models, page.contents.frame, limits_of_stream(size, limits));
@@ -265,6 +274,7 @@ Result<StoredPage> read_page_bytes(ByteView bytes, PageKind kind, const Limits& 
     PageSolid solid;
     const StreamCosts before = stream.costs();
     if (auto status = coder.code(solid); !status) {
+      if (limits.is_cancelled()) return cancelled();
       Error error = std::move(status).error();
       if (kind == PageKind::page) error.message += "; solid " + std::to_string(i);
       if (!error.byte_offset) error.byte_offset = kHeaderBytes + stream.position();

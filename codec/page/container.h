@@ -31,11 +31,14 @@ struct StoredPage {
   std::vector<StreamCosts> costs;  // the costs of each solid, in 1/65536 bit
 };
 
-/// Writes each solid of `page` by its element of `plans`; `certificate` may be null. Afterwards
+/// Writes each solid of `page` by its element of `plans`; `certificate` and `cancel` may be null.
+/// Afterwards
 /// each plan in automatic mode names the mode that costs least, and each solid has the mode of its
-/// plan and the sections that this mode needs. Errors: not_encodable; unsupported (the models).
+/// plan and the sections that this mode needs. Errors: not_encodable; unsupported (the models). Once
+/// cancelled, errors and bytes mean nothing.
 Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, PageKind kind,
-                               const delaunay::Certificate* certificate);
+                               const delaunay::Certificate* certificate,
+                               const CancelPoll* cancel = nullptr);
 
 /// Returns `limits`, lowered to the most that a stream of `bytes` bytes may decode to
 /// (docs/format.md, "Limits").

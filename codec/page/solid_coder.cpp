@@ -422,6 +422,7 @@ std::unique_ptr<Draft> SolidCoder::draft(const PageSolid& solid, Mode mode,
   auto draft = std::make_unique<Draft>(
       mode, models, size,
       size > kMostRecorded ? EntropyStream::meter(limit) : EntropyStream::recorder(limit));
+  draft->decisions.heed(limits_);
   draft->choice = made;
   const Status coded = coder.code(draft->decisions, models, memory_, integers, made, limits_);
   if (!coded || draft->decisions.failed()) return nullptr;

@@ -107,6 +107,8 @@ class SolidCoder {
   /// decline; null if no such mode can hold the solid.
   std::unique_ptr<Draft> cheapest(const PageSolid& solid, const Plan& plan = {}) const;
 
+  bool is_cancelled() const { return limits_.is_cancelled(); }
+
  private:
   Mode code_mode(Mode mode);
   Status code_geometry(PageSolid& solid, const WriterChoice& choice, Draft* draft);

@@ -50,6 +50,18 @@ OrientedBoundary plate(Index n) {
   return generated::boundary_of(std::move(arrays));
 }
 
+/// The same with vertices that no rule gives: its blob has bytes for each of them.
+OrientedBoundary rough_plate(Index n) {
+  generated::Random random(11);
+  SolidArrays arrays = plate(n).solid().arrays();
+  for (Point& vertex : arrays.vertices) {
+    vertex.x = 1000 * vertex.x + static_cast<double>(random.below(300));
+    vertex.y = 1000 * vertex.y + static_cast<double>(random.below(300));
+    vertex.z = 1000 * vertex.z + static_cast<double>(random.below(300));
+  }
+  return generated::boundary_of(std::move(arrays));
+}
+
 /// A cone over n points of a parabola: its tip has degree n.
 OrientedBoundary cone(Index n) {
   SolidArrays arrays;
@@ -281,4 +293,33 @@ TEST_CASE("only nearby columns of a page are considered for each column of a sol
   std::vector<codec::GridPoint> read;
   REQUIRE(codec::walk::code_columns(reader, reading, memory, read, {}));
   CHECK(read == points);
+}
+
+TEST_CASE("encoding and decoding end soon after nobody wants the result") {
+  const OrientedBoundary boundary = rough_plate(30);
+  for (const Mode mode :
+       {Mode::bitmap, Mode::walk, Mode::polygon, Mode::parallelogram, Mode::automatic}) {
+    INFO(codec::to_string(mode));
+    const auto blob = codec::encode_boundary(boundary, {}, {.mode = mode});
+    REQUIRE(blob);
+    int asked = 0;
+    int patience = 1'000'000;
+    const CancelPoll poll = [&] { return ++asked > patience; };
+    Limits limits;
+    limits.cancel = &poll;
+    const auto again = codec::encode_boundary(boundary, {}, {.mode = mode, .cancel = &poll});
+    REQUIRE(again);
+    CHECK(*again == *blob);
+    REQUIRE(decode(*blob, limits));
+    for (const int wanted : {0, 2}) {
+      patience = asked + wanted;
+      const auto ended = codec::encode_boundary(boundary, {}, {.mode = mode, .cancel = &poll});
+      REQUIRE_FALSE(ended);
+      CHECK(ended.error().code == ErrorCode::cancelled);
+      patience = asked + wanted;
+      const auto decoded = decode(*blob, limits);
+      REQUIRE_FALSE(decoded);
+      CHECK(decoded.error().code == ErrorCode::cancelled);
+    }
+  }
 }

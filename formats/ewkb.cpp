@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "formats/mesh/mesh_text.h"
@@ -27,6 +28,31 @@ constexpr std::uint32_t kTriangle = 17;
 constexpr std::uint32_t kSolid = 101;  // the number that SFCGAL gives its Solid; PostGIS has none
 
 constexpr std::uint32_t kFacetsBetweenPolls = 4096;
+
+/// Leaves each point once, at the place of the first of its kind, and numbers them anew in
+/// `ring_vertices`, which has the numbers of all points in order.
+void merge_equal(std::vector<std::array<double, 3>>& points, std::vector<Index>& ring_vertices) {
+  std::vector<Index> by_place(points.size());
+  std::iota(by_place.begin(), by_place.end(), Index{0});
+  std::sort(by_place.begin(), by_place.end(), [&](Index a, Index b) {
+    return points[a] != points[b] ? points[a] < points[b] : a < b;
+  });
+  std::vector<Index> first(points.size());
+  for (std::size_t i = 0; i < by_place.size(); ++i) {
+    const bool is_same = i > 0 && points[by_place[i]] == points[by_place[i - 1]];
+    first[by_place[i]] = is_same ? first[by_place[i - 1]] : by_place[i];
+  }
+  Index count = 0;
+  std::vector<Index>& number = by_place;  // of points that are the first of their kind
+  for (Index i = 0; i < points.size(); ++i) {
+    if (first[i] == i) {
+      number[i] = count;
+      points[count++] = points[i];
+    }
+    ring_vertices[i] = number[first[i]];
+  }
+  points.resize(count);
+}
 
 class EwkbReader {
  public:
@@ -50,6 +76,8 @@ class EwkbReader {
     }
     auto status = *type == kSolid ? shells() : shell();
     if (!status) return status.error();
+    merge_equal(positions_, arrays_.ring_vertices);
+    if (limits_.is_cancelled()) return Error{ErrorCode::cancelled, "the reading was cancelled"};
     auto points = geometry::lattice_of_doubles(positions_);
     if (!points) return std::move(points).error();
     const char* name = *type == kSolid ? "SOLID Z"

@@ -49,7 +49,8 @@ void collect_triangles(const delaunay::FollowingTriangles& following,
   }
 }
 
-Result<BoundaryComplex> follow(const geometry::CanonicalSolid& canonical) {
+Result<BoundaryComplex> follow(const geometry::CanonicalSolid& canonical,
+                               const CancelPoll& is_cancelled) {
   const Solid& solid = canonical.boundary.solid();
   BoundaryComplex complex;
   complex.points.assign(solid.vertices().begin(), solid.vertices().end());
@@ -58,7 +59,7 @@ Result<BoundaryComplex> follow(const geometry::CanonicalSolid& canonical) {
     return not_encodable(
         "mode bitmap codes only coordinates that are 0 or of magnitude 2^-100 to 2^100");
   }
-  auto delaunay = create_delaunay(complex);
+  auto delaunay = create_delaunay(complex, is_cancelled);
   if (!delaunay) return delaunay.error();
   const tessellate::FacetTriangles facets = tessellate::triangulate_facets(solid);
   const delaunay::FollowingTriangles following =
@@ -151,8 +152,9 @@ std::uint64_t storable_tetrahedra(std::size_t point_count) {
 }
 
 Result<BoundaryComplex> create_cdt(const geometry::CanonicalSolid& solid,
-                                   const delaunay::Certificate* certificate) {
-  return certificate != nullptr ? conform(solid, *certificate) : follow(solid);
+                                   const delaunay::Certificate* certificate,
+                                   const CancelPoll& is_cancelled) {
+  return certificate != nullptr ? conform(solid, *certificate) : follow(solid, is_cancelled);
 }
 
 void store_nodes(const BoundaryComplex& complex, Decomposition& result) {
@@ -182,10 +184,12 @@ Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex) {
   return marked;
 }
 
-Result<delaunay::CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex) {
+Result<delaunay::CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex,
+                                                    const CancelPoll& is_cancelled) {
   if (complex.delaunay) return *complex.delaunay;
   auto delaunay =
-      delaunay::canonical_delaunay(complex.points, storable_tetrahedra(complex.points.size()));
+      delaunay::canonical_delaunay(complex.points, storable_tetrahedra(complex.points.size()),
+                                   is_cancelled);
   if (!delaunay) return not_encodable(delaunay.error().message);
   if (delaunay->tetrahedra.empty()) return not_encodable("the vertices span no volume");
   return delaunay;
@@ -222,14 +226,15 @@ void store_unrecovered_faces(const MarkedFaces& marked, const delaunay::Canonica
 }
 
 Result<Decomposition> decompose(const geometry::CanonicalSolid& solid,
-                                const delaunay::Certificate* certificate) {
+                                const delaunay::Certificate* certificate,
+                                const CancelPoll& is_cancelled) {
   Decomposition result;
-  auto complex = create_cdt(solid, certificate);
+  auto complex = create_cdt(solid, certificate, is_cancelled);
   if (!complex) return complex.error();
   store_nodes(*complex, result);
   auto marked = mark_cdt_faces(*complex);
   if (!marked) return marked.error();
-  auto delaunay = create_delaunay(*complex);
+  auto delaunay = create_delaunay(*complex, is_cancelled);
   if (!delaunay) return delaunay.error();
   const std::vector<bool> marks = mark_delaunay_faces(*marked, *delaunay);
   store_bitmap(*delaunay, marks, result);

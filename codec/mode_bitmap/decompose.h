@@ -51,7 +51,8 @@ std::uint64_t storable_tetrahedra(std::size_t point_count);
 /// Steiner vertex. Errors: not_encodable if a facet has no triangulation or the certificate is not
 /// of this solid.
 Result<BoundaryComplex> create_cdt(const geometry::CanonicalSolid& solid,
-                                   const delaunay::Certificate* certificate);
+                                   const delaunay::Certificate* certificate,
+                                   const CancelPoll& is_cancelled = {});
 
 /// 2. Store the CDT's nodes: vertices and Steiner vertices.
 void store_nodes(const BoundaryComplex& complex, Decomposition& result);
@@ -62,7 +63,8 @@ Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex);
 
 /// 4. Create the Delaunay tetrahedralization of the nodes.
 /// Errors: not_encodable if it is flat or has too many tetrahedra.
-Result<delaunay::CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex);
+Result<delaunay::CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex,
+                                                    const CancelPoll& is_cancelled = {});
 
 /// 5. Mark the Delaunay faces that are marked CDT faces.
 std::vector<bool> mark_delaunay_faces(const MarkedFaces& marked,
@@ -76,8 +78,9 @@ void store_bitmap(const delaunay::CanonicalDelaunay& delaunay, const std::vector
 void store_unrecovered_faces(const MarkedFaces& marked, const delaunay::CanonicalDelaunay& delaunay,
                              Decomposition& result);
 
-/// Does all steps and codes the facet structure. Errors: not_encodable.
+/// Does all steps and codes the facet structure. Errors: not_encodable, also when cancelled.
 Result<Decomposition> decompose(const geometry::CanonicalSolid& solid,
-                                const delaunay::Certificate* certificate);
+                                const delaunay::Certificate* certificate,
+                                const CancelPoll& is_cancelled = {});
 
 }  // namespace watertight::codec::bitmap

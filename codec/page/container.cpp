@@ -52,14 +52,15 @@ std::uint32_t page_checksum(const PageContents& page, PageKind kind) {
 }
 
 Result<PlainSections> plain_sections(const geometry::CanonicalSolid& canonical, Mode mode,
-                                     const delaunay::Certificate* certificate) {
+                                     const delaunay::Certificate* certificate,
+                                     const CancelPoll& is_cancelled = {}) {
   const Solid& solid = canonical.boundary.solid();
   PlainSections plain;
   if (mode == Mode::raw) {
     plain.sections = {write_vertices(solid.vertices()), write_facet_listing(solid.arrays())};
     return plain;
   }
-  auto parts = bitmap::decompose(canonical, certificate);
+  auto parts = bitmap::decompose(canonical, certificate, is_cancelled);
   if (!parts) return parts.error();
   plain.counts = parts->counts;
   unsigned flags = 0;
@@ -86,12 +87,12 @@ Result<PlainSections> plain_sections(const geometry::CanonicalSolid& canonical, 
 }
 
 /// Chooses the shorter of modes raw and bitmap and makes the sections of that mode.
-Result<Mode> choose_plain(PageSolid& solid, const Plan& plan) {
+Result<Mode> choose_plain(PageSolid& solid, const Plan& plan, const CancelPoll& is_cancelled) {
   auto raw = plain_sections(*solid.canonical, Mode::raw, nullptr);
   if (!raw) return raw.error();
   solid.plain = std::move(raw).value();
   if ((plan.declined >> static_cast<unsigned>(Mode::bitmap) & 1U) != 0) return Mode::raw;
-  auto bitmap = plain_sections(*solid.canonical, Mode::bitmap, nullptr);
+  auto bitmap = plain_sections(*solid.canonical, Mode::bitmap, nullptr, is_cancelled);
   if (!bitmap || size_of(*bitmap) >= size_of(solid.plain)) return Mode::raw;
   solid.plain = std::move(bitmap).value();
   return Mode::bitmap;
@@ -109,14 +110,15 @@ Result<std::unique_ptr<Draft>> complete(const SolidCoder& coder, PageSolid& soli
       if (!draft->decisions.is_recorder()) draft.reset();
       return draft;
     }
-    if (coder.is_cancelled()) return cancelled();
-    const auto mode = choose_plain(solid, plan);
+    const CancelPoll is_cancelled = coder.poll();
+    if (is_cancelled && is_cancelled()) return cancelled();
+    const auto mode = choose_plain(solid, plan, is_cancelled);
     if (!mode) return mode.error();
     plan.mode = *mode;
   }
   const bool is_plain = plan.mode == Mode::raw || plan.mode == Mode::bitmap;
   if (is_plain && solid.plain.sections.empty()) {
-    auto plain = plain_sections(*solid.canonical, plan.mode, certificate);
+    auto plain = plain_sections(*solid.canonical, plan.mode, certificate, coder.poll());
     if (!plain) return plain.error();
     solid.plain = std::move(plain).value();
   }

@@ -107,7 +107,7 @@ class SolidCoder {
   /// decline; null if no such mode can hold the solid.
   std::unique_ptr<Draft> cheapest(const PageSolid& solid, const Plan& plan = {}) const;
 
-  bool is_cancelled() const { return limits_.is_cancelled(); }
+  CancelPoll poll() const { return limits_.poll(); }
 
  private:
   Mode code_mode(Mode mode);

@@ -26,7 +26,7 @@ struct Limits {
   std::uint64_t claimed = 1'000'000;      // see claimed_by()
   std::uint64_t expanded = 64ULL << 20;   // see expanded_from()
   std::uint32_t nesting = 64;             // the deepest nesting of arrays and objects in a document
-  std::uint64_t findings = 10'000;  // the most findings kept in a report; more are only counted
+  std::uint64_t findings = 10'000;     // the most findings kept in a report; more are only counted
   const CancelPoll* cancel = nullptr;  // ends the work by ErrorCode::cancelled; null: nothing does
 
   bool is_cancelled() const { return cancel != nullptr && *cancel && (*cancel)(); }

@@ -14,8 +14,8 @@ namespace {
 constexpr std::uint32_t kHalf = 32768;
 constexpr std::size_t kWindow = 4;  // the number of bytes that a reader keeps ahead
 
-/// Between two questions whether the work is cancelled lie so many decisions as have this cost: less
-/// than a millisecond.
+/// Between two questions whether the work is cancelled lie so many decisions as have this cost:
+/// less than a millisecond.
 constexpr std::uint64_t kCostOfPause = std::uint64_t{4096} << kCostBits;
 
 /// The last bytes of a stream: the shortest ones that, followed by zeros, lie in [low, high]; of

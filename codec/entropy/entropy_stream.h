@@ -89,8 +89,8 @@ class EntropyStream {
   void fail() { failed_ = true; }
   bool failed() const { return failed_ || (cost_ >= pause_ && is_over()); }
 
-  /// Makes failed() ask `limits.cancel` now and then, and be true once that is true. A reader without
-  /// costs never asks.
+  /// Makes failed() ask `limits.cancel` now and then, and be true once that is true. A reader
+  /// without costs never asks.
   void heed(const Limits& limits);
 
   /// When reading, the number of bytes taken so far, including the few that the coder reads ahead.

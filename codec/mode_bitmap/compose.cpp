@@ -31,14 +31,12 @@ Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits) {
   return nodes;
 }
 
-Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes,
-                                                    const Limits& limits) {
+Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes, const Limits& limits) {
   if (!has_storable_delaunay(nodes.points)) {
     return Error{ErrorCode::malformed, "coordinates outside the range of mode bitmap"};
   }
-  auto delaunay =
-      delaunay::canonical_delaunay(nodes.points, storable_tetrahedra(nodes.points.size()),
-                                   limits.poll());
+  auto delaunay = delaunay::canonical_delaunay(
+      nodes.points, storable_tetrahedra(nodes.points.size()), limits.poll());
   if (!delaunay) return Error{ErrorCode::malformed, delaunay.error().message};
   if (delaunay->tetrahedra.empty()) {
     return Error{ErrorCode::malformed, "the vertices of a bitmap blob span no volume"};

@@ -44,8 +44,7 @@ Result<Nodes> read_nodes(const BitmapSections& sections, const Limits& limits);
 
 /// 2. Create the Delaunay tetrahedralization of the nodes.
 /// Errors: malformed where an encoder would not have chosen mode bitmap.
-Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes,
-                                                   const Limits& limits = {});
+Result<delaunay::CanonicalDelaunay> create_delaunay(const Nodes& nodes, const Limits& limits = {});
 
 /// 3. Read the bitmap: the marks. Errors: malformed.
 Result<std::vector<bool>> read_bitmap(const BitmapSections& sections,

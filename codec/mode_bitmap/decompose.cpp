@@ -187,9 +187,8 @@ Result<MarkedFaces> mark_cdt_faces(const BoundaryComplex& complex) {
 Result<delaunay::CanonicalDelaunay> create_delaunay(const BoundaryComplex& complex,
                                                     const CancelPoll& is_cancelled) {
   if (complex.delaunay) return *complex.delaunay;
-  auto delaunay =
-      delaunay::canonical_delaunay(complex.points, storable_tetrahedra(complex.points.size()),
-                                   is_cancelled);
+  auto delaunay = delaunay::canonical_delaunay(
+      complex.points, storable_tetrahedra(complex.points.size()), is_cancelled);
   if (!delaunay) return not_encodable(delaunay.error().message);
   if (delaunay->tetrahedra.empty()) return not_encodable("the vertices span no volume");
   return delaunay;

@@ -18,8 +18,8 @@
 namespace watertight::codec {
 namespace {
 
-/// A stream that is cancelled ends as a malformed one does, or as no mode that holds the solid; this
-/// is the error then.
+/// A stream that is cancelled ends as a malformed one does, or as no mode that holds the solid;
+/// this is the error then.
 Error cancelled() { return {ErrorCode::cancelled, "the blob is not wanted any more"}; }
 
 constexpr std::uint8_t kSolidMagic[2] = {'W', 'T'};
@@ -192,8 +192,7 @@ Frame frame_of(const Solid& solid, const Acceptance& acceptance) {
 }
 
 Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, PageKind kind,
-                               const delaunay::Certificate* certificate,
-                               const CancelPoll* cancel) {
+                               const delaunay::Certificate* certificate, const CancelPoll* cancel) {
   auto models = ModelSet::make(page.models);
   if (!models) return models.error();
   const Limits none{.bytes = ~std::uint64_t{0},

@@ -34,8 +34,8 @@ struct StoredPage {
 /// Writes each solid of `page` by its element of `plans`; `certificate` and `cancel` may be null.
 /// Afterwards
 /// each plan in automatic mode names the mode that costs least, and each solid has the mode of its
-/// plan and the sections that this mode needs. Errors: not_encodable; unsupported (the models). Once
-/// cancelled, errors and bytes mean nothing.
+/// plan and the sections that this mode needs. Errors: not_encodable; unsupported (the models).
+/// Once cancelled, errors and bytes mean nothing.
 Result<Bytes> write_page_bytes(PageContents& page, std::vector<Plan>& plans, PageKind kind,
                                const delaunay::Certificate* certificate,
                                const CancelPoll* cancel = nullptr);

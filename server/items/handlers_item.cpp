@@ -214,8 +214,9 @@ std::optional<Response> cached(const ItemRequest& item, std::uint64_t version) {
   return linked(item, in_range(item.message, *kept));
 }
 
-/// The answer that needs the feature's version alone: that of the cache, 304 or 412 by the request's
-/// preconditions, or an error. One query, which a request for what nobody has asked for goes without.
+/// The answer that needs the feature's version alone: that of the cache, 304 or 412 by the
+/// request's preconditions, or an error. One query, which a request for what nobody has asked for
+/// goes without.
 std::optional<Response> answered_by_version(const ItemRequest& item) {
   const auto version = item.service.store->version(item.collection, item.id);
   if (!version) return to_response(to_problem(version.error()));

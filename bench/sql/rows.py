@@ -46,6 +46,12 @@ class Server:
         self.ask(*statements)
         return time.perf_counter() - start
 
+    def timed_file(self, name):
+        """Seconds that psql takes for a file of commands in the server's folder."""
+        start = time.perf_counter()
+        self.run("psql", "-X", "-q", "-v", "ON_ERROR_STOP=1", "-h", str(self.folder), "-U", "watertight", "-d", "postgres", "-f", str(self.folder / name))
+        return time.perf_counter() - start
+
     def stop(self):
         self.run("pg_ctl", "-D", str(self.folder / "data"), "-s", "-m", "immediate", "stop")
 

@@ -5,7 +5,7 @@
 The valid solids of the documents are moved to places of their own until there are N rows (100,000), in a server of its
 own with PostgreSQL's default settings but 1 GB of shared buffers and the cost of a random page that fits solid-state disks (1.1).
 Measured are: judging EWKB with full proof, the sizes of tables of solids, blobs, EWKB (in bytea, compressed by PostgreSQL) beside
-each other, indexes, queries, those of the CityParquet benchmark among them, a dump and its return. Needs what
+each other, of PostGIS's geometry and of jsonb, indexes, queries, those of the CityParquet benchmark among them, a dump and its return. Needs what
 tests/sql/run_regress.sh needs.
 """
 import argparse
@@ -87,8 +87,10 @@ def load(server, build, documents, rows):
 
 
 def measure_sizes(server, rows):
-    server.ask("CREATE TABLE as_ewkb AS SELECT id, wt_as_ewkb(shape) AS ewkb FROM town", "CREATE TABLE as_blob AS SELECT id, shape::bytea AS blob FROM town")
-    size = {name: int(server.ask(f"SELECT pg_table_size('{name}')")) for name in ("town", "as_ewkb", "as_blob")}
+    server.ask("CREATE EXTENSION postgis", "CREATE TABLE as_ewkb AS SELECT id, wt_as_ewkb(shape) AS ewkb FROM town", "CREATE TABLE as_blob AS SELECT id, shape::bytea AS blob FROM town",
+               "CREATE TABLE as_jsonb AS SELECT id, wt_as_cityjson(shape)::jsonb AS model FROM town",  # a document of one solid, as there is no geometry without its vertices
+               "CREATE TABLE as_geometry AS SELECT id, ST_GeomFromEWKB(wt_as_ewkb(shape)) AS geom FROM town WHERE wt_shell_count(shape) = 1")  # PostGIS has no cavities
+    size = {name: int(server.ask(f"SELECT pg_table_size('{name}')")) for name in ("town", "as_ewkb", "as_blob", "as_geometry", "as_jsonb")}
     for name, value in size.items():
         say(f"table {name}", f"{value / 1e6:9.1f} MB, {value / rows:7.1f} bytes a row, {100 * value / size['as_ewkb']:5.1f} % of EWKB")
     say("a value", f"{float(server.ask('SELECT avg(pg_column_size(shape)) FROM town')):9.1f} bytes; its EWKB "

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Memory of a backend over a million calls: calls.py BUILD [--calls N] DOCUMENT
+
+The solids of the document, in one session: N calls (1,000,000) of each of five functions, valid and invalid input. Printed is the
+resident memory of the backend after a tenth and after all of them.
+"""
+import argparse
+import pathlib
+import subprocess
+import sys
+
+from rows import ROOT, Server, say
+
+sys.path.insert(0, str(ROOT / "tests" / "siege"))
+from service import temporary_folder  # noqa: E402
+
+CALLS = ("wt_is_valid(ewkb)", "wt_try_solid(ewkb) IS NULL", "wt_validate(ewkb) IS NULL", "wt_as_ewkb(shape) IS NULL", "wt_centroid(shape) IS NULL")
+MEMORY = "SELECT (regexp_match(pg_read_file('/proc/self/status'), 'VmRSS:\\s+(\\d+)'))[1]"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("build")
+    parser.add_argument("--calls", type=int, default=1_000_000)
+    parser.add_argument("document", type=pathlib.Path)
+    options = parser.parse_args()
+    build = str(pathlib.Path(options.build).resolve())
+    with temporary_folder("calls") as folder:
+        server = Server(build, folder)
+        try:
+            rows = folder / "rows"
+            with rows.open("w") as out:
+                subprocess.run([f"{build}/bin/watertight", "rows", str(options.document)], check=True, stdout=out)
+            server.ask("CREATE EXTENSION watertight", "CREATE TABLE raw (feature text, object text, lod text, ewkb bytea)")
+            with rows.open() as source:
+                server.ask("COPY raw FROM STDIN", stdin=source)
+            server.ask("CREATE TABLE both_kinds AS SELECT ewkb, wt_try_solid(ewkb) AS shape FROM raw")
+            count = int(server.ask("SELECT count(*) FROM both_kinds"))
+            for call in CALLS:
+                def some(calls):
+                    return f"DO $$ BEGIN FOR i IN 1..{max(1, calls // count)} LOOP PERFORM count({call}) FROM both_kinds; END LOOP; END $$"
+                first, last = server.ask("SET max_parallel_workers_per_gather = 0", some(options.calls // 10), MEMORY, some(options.calls * 9 // 10), MEMORY).split()
+                say(call, f"{int(first):9} kB, {int(last):9} kB in the end")
+        finally:
+            server.stop()
+
+
+if __name__ == "__main__":
+    main()

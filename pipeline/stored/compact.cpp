@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/stored/compact.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,25 @@ Result<packing::DictionaryPointer> dictionary_for(SolidStore& store, const std::
   return packing::best_dictionary(texts, features, is_outdated ? nullptr : *newest);
 }
 
+/// The feature with a text that is shorter with the dictionary, or with its solids in a page; nothing
+/// if neither makes it smaller.
+Result<std::optional<StoredFeature>> packed_smaller(StoredFeature feature,
+                                                    const packing::DictionaryPointer& dictionary) {
+  if (!is_same(feature.skeleton.dictionary, dictionary)) {
+    auto encoded = unpack(feature);
+    if (!encoded) return std::move(encoded).error();
+    auto packed = pack(*std::move(encoded), dictionary);
+    if (!packed) return std::move(packed).error();
+    if (packed->skeleton.bytes.size() < feature.skeleton.bytes.size()) {
+      return std::optional(*std::move(packed));
+    }
+  }
+  if (!may_share_page(feature)) return std::optional<StoredFeature>();
+  if (Status put = put_in_page(feature); !put) return std::move(put).error();
+  if (feature.page.empty()) return std::optional<StoredFeature>();
+  return std::optional(std::move(feature));
+}
+
 }  // namespace
 
 Result<CompactCounts> compact(SolidStore& store, const std::string& collection,
@@ -62,19 +82,10 @@ Result<CompactCounts> compact(SolidStore& store, const std::string& collection,
       const std::uint64_t bytes = feature.skeleton.bytes.size();
       ++counts.features;
       counts.bytes_before += bytes;
-      if (is_same(feature.skeleton.dictionary, *dictionary)) {
-        counts.bytes_after += bytes;
-        if (!may_share_page(feature)) continue;
-        if (Status put = put_in_page(feature); !put) return std::move(put).error();
-        if (!feature.page.empty()) repacked.push_back(std::move(feature));
-        continue;
-      }
-      auto encoded = unpack(std::move(feature));
-      if (!encoded) return std::move(encoded).error();
-      auto packed = pack(*std::move(encoded), *dictionary);
-      if (!packed) return std::move(packed).error();
-      counts.bytes_after += packed->skeleton.bytes.size();
-      repacked.push_back(*std::move(packed));
+      auto smaller = packed_smaller(std::move(feature), *dictionary);
+      if (!smaller) return std::move(smaller).error();
+      counts.bytes_after += *smaller ? (*smaller)->skeleton.bytes.size() : bytes;
+      if (*smaller) repacked.push_back(**std::move(smaller));
     }
     const auto written = store.repack(repacked);
     if (!written) return written.error();

@@ -98,4 +98,28 @@ TEST_CASE("128-bit and long integers give the same volume") {
   }
 }
 
+TEST_CASE("the sign of a volume is that of the exact sum, however thin the solid") {
+  Random random(23);
+  int undecided_by_doubles = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const auto coordinate = [&] { return static_cast<double>(random.below(1U << 30U)) / 3.0; };
+    std::vector<Point> vertices(4);
+    for (int i = 0; i < 3; ++i) {
+      vertices[static_cast<std::size_t>(i)] = {coordinate(), coordinate(), coordinate()};
+    }
+    // The fourth is in the plane of the others but for rounding, and some ulps.
+    Point& last = vertices[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      last[axis] = vertices[0][axis] / 4 + vertices[1][axis] / 4 + vertices[2][axis] / 2;
+    }
+    last.z = std::nextafter(last.z, round % 2 == 0 ? 0.0 : 1e300);
+    const std::vector<Triangle> triangles{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    const double exact = geometry::six_volume(vertices, triangles);
+    const int sign = exact > 0 ? 1 : exact < 0 ? -1 : 0;
+    REQUIRE(geometry::volume_sign(vertices, triangles) == sign);
+    undecided_by_doubles += std::abs(exact) < 1e9 ? 1 : 0;  // of products near 1e26
+  }
+  CHECK(undecided_by_doubles > 0);
+}
+
 }  // namespace watertight::test

@@ -42,8 +42,8 @@ Result<packing::DictionaryPointer> dictionary_for(SolidStore& store, const std::
   return packing::best_dictionary(texts, features, is_outdated ? nullptr : *newest);
 }
 
-/// The feature with a text that is shorter with the dictionary, or with its solids in a page; nothing
-/// if neither makes it smaller.
+/// The feature with a text that is shorter with the dictionary, or with its solids in a page;
+/// nothing if neither makes it smaller.
 Result<std::optional<StoredFeature>> packed_smaller(StoredFeature feature,
                                                     const packing::DictionaryPointer& dictionary) {
   if (!is_same(feature.skeleton.dictionary, dictionary)) {

@@ -199,15 +199,14 @@ Response represented(StoredFeature feature, const ItemRequest& item,
   return linked(item, in_range(item.message, std::move(response)));
 }
 
-/// Whether the cache has an answer, of this version of the feature or an older one.
-bool is_kept(const ItemRequest& item) {
-  return item.service.cache != nullptr && item.service.cache->find(item.key()) != nullptr;
+/// The answer that the cache has, for the newest version of the feature or an older one.
+RepresentationCache::Answer kept_answer(const ItemRequest& item) {
+  return item.service.cache == nullptr ? nullptr : item.service.cache->find(item.key());
 }
 
 /// The answer that the cache has for this version of the feature.
 std::optional<Response> cached(const ItemRequest& item, std::uint64_t version) {
-  if (item.service.cache == nullptr) return std::nullopt;
-  const auto kept = item.service.cache->find(item.key());
+  const auto kept = kept_answer(item);
   if (!kept || kept->headers.front().value != etag_of(version, item.representation())) {
     return std::nullopt;
   }
@@ -293,14 +292,15 @@ Response get_item(const RoutedRequest& request) {
                          std::move(form),
                          request.request,
                          links_of_item(request, is_json_fg)};
-  if (has_precondition(request.request) || is_kept(item)) {
+  const auto kept = kept_answer(item);
+  if (has_precondition(request.request) || kept) {
     if (auto answered = answered_by_version(item)) return *std::move(answered);
   }
   Response response;
   response.further = std::make_shared<const FurtherWork>(
-      FurtherWork{Lane::small, item.key(), [item](const CancelPoll& is_cancelled) {
+      FurtherWork{Lane::small, item.key(), [item, kept](const CancelPoll& is_cancelled) {
                     // A request for the same may have been answered meanwhile.
-                    if (is_kept(item)) {
+                    if (kept_answer(item) != kept) {
                       if (auto answered = answered_by_version(item)) return *std::move(answered);
                     }
                     return read_and_represent(item, is_cancelled);

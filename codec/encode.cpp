@@ -29,9 +29,7 @@ constexpr Limits kNoLimits{.bytes = ~std::uint64_t{0},
 Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
                                      const std::vector<Source>& sources,
                                      const std::vector<PageSolid>& stored,
-                                     const EncodeOptions& options) {
-  Limits limits = kNoLimits;
-  limits.cancel = options.cancel;
+                                     const EncodeOptions& options, const Limits& limits) {
   const auto page = read_page_bytes(bytes, kind, limits);
   if (!page) return page.error();
   for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -43,10 +41,6 @@ Result<std::size_t> first_difference(ByteView bytes, PageKind kind,
     if (!is_equal) return i;
   }
   return sources.size();
-}
-
-bool is_cancelled(const EncodeOptions& options) {
-  return options.cancel != nullptr && *options.cancel && (*options.cancel)();
 }
 
 /// Makes automatic mode take another mode than the one that it has taken.
@@ -70,13 +64,15 @@ Result<Bytes> encode_modes(const std::vector<Source>& sources, PageKind kind,
   std::vector<Plan> plans(sources.size(), Plan{.mode = options.mode});
   page.frame = frame_of(sources.front().boundary->solid(), sources.front().acceptance);
   const bool may_fall_back = options.mode == Mode::automatic;
+  Limits limits = kNoLimits;
+  limits.cancel = options.cancel;
   for (std::size_t attempt = 0; attempt <= sources.size() + kModes; ++attempt) {
     auto bytes = write_page_bytes(page, plans, kind, options.certificate, options.cancel);
     const Error cancelled{ErrorCode::cancelled, "the blob is not wanted any more"};
-    if (!bytes && is_cancelled(options)) return cancelled;
+    if (!bytes && limits.is_cancelled()) return cancelled;
     if (!bytes) return bytes;
-    const auto difference = first_difference(*bytes, kind, sources, page.solids, options);
-    if (is_cancelled(options)) return cancelled;
+    const auto difference = first_difference(*bytes, kind, sources, page.solids, options, limits);
+    if (limits.is_cancelled()) return cancelled;
     if (difference && *difference == sources.size()) return bytes;
     const bool is_too_short = !difference && difference.error().code == ErrorCode::limit_exceeded;
     if (!may_fall_back) {

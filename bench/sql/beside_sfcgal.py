@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 
-from rows import ROOT, Server, say
+from rows import ROOT, Server, copy_solids, say
 
 sys.path.insert(0, str(ROOT / "tests" / "siege"))
 from service import temporary_folder  # noqa: E402
@@ -77,13 +77,8 @@ def main():
     with temporary_folder("sfcgal") as folder:
         server = Server(build, folder)
         try:
-            rows = folder / "rows"
-            with rows.open("w") as out:
-                subprocess.run([f"{build}/bin/watertight", "rows", *sys.argv[2:]], check=True, stdout=out)
-            server.ask("CREATE EXTENSION watertight", "CREATE EXTENSION postgis", "CREATE EXTENSION postgis_sfcgal",
-                       "CREATE TABLE raw (feature text, object text, lod text, ewkb bytea)")
-            with rows.open() as source:
-                server.ask("COPY raw FROM STDIN", stdin=source)
+            server.ask("CREATE EXTENSION watertight", "CREATE EXTENSION postgis", "CREATE EXTENSION postgis_sfcgal")
+            copy_solids(server, build, sys.argv[2:], "raw")
             # Moved to the origin, where SFCGAL's doubles lose nothing.
             server.ask("""CREATE TABLE small AS SELECT row_number() OVER () AS id, wt_facet_count(s) AS facets, ewkb, s AS shape,
                 ST_Translate(ST_GeomFromEWKB(ewkb), -wt_bound(wt_box(s), 1), -wt_bound(wt_box(s), 2), -wt_bound(wt_box(s), 3)) AS geom

@@ -8,10 +8,9 @@ because compiled plans of PostgreSQL keep memory until the session ends.
 """
 import argparse
 import pathlib
-import subprocess
 import sys
 
-from rows import ROOT, Server, say
+from rows import ROOT, Server, copy_solids, say
 
 sys.path.insert(0, str(ROOT / "tests" / "siege"))
 from service import temporary_folder  # noqa: E402
@@ -30,12 +29,8 @@ def main():
     with temporary_folder("calls") as folder:
         server = Server(build, folder)
         try:
-            rows = folder / "rows"
-            with rows.open("w") as out:
-                subprocess.run([f"{build}/bin/watertight", "rows", str(options.document)], check=True, stdout=out)
-            server.ask("CREATE EXTENSION watertight", "CREATE TABLE raw (feature text, object text, lod text, ewkb bytea)")
-            with rows.open() as source:
-                server.ask("COPY raw FROM STDIN", stdin=source)
+            server.ask("CREATE EXTENSION watertight")
+            copy_solids(server, build, [options.document], "raw")
             server.ask("CREATE TABLE both_kinds AS SELECT ewkb, wt_try_solid(ewkb) AS shape FROM raw")
             count = int(server.ask("SELECT count(*) FROM both_kinds"))
             calls = options.calls // len(CALLS)

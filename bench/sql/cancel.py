@@ -12,7 +12,7 @@ import statistics
 import subprocess
 import sys
 
-from rows import ROOT, Server, say
+from rows import ROOT, Server, copy_solids, say
 
 sys.path.insert(0, str(ROOT / "tests" / "siege"))
 from service import temporary_folder  # noqa: E402
@@ -55,13 +55,9 @@ def main():
     with temporary_folder("cancel") as folder:
         server = Server(build, folder)
         try:
-            rows = folder / "rows"
-            with rows.open("w") as out:
-                subprocess.run([f"{build}/bin/watertight", "rows", str(options.mesh)], check=True, stdout=out)
-            server.ask("CREATE EXTENSION watertight", "CREATE TABLE raw (feature text, object text, lod text, ewkb bytea, blob bytea)")
-            with rows.open() as source:
-                server.ask("COPY raw (feature, object, lod, ewkb) FROM STDIN", stdin=source)
-            server.ask("CREATE TABLE town AS SELECT wt_solid(ewkb) AS shape FROM raw", "UPDATE raw SET blob = shape::bytea FROM town",
+            server.ask("CREATE EXTENSION watertight")
+            copy_solids(server, build, [options.mesh], "raw")
+            server.ask("ALTER TABLE raw ADD blob bytea", "CREATE TABLE town AS SELECT wt_solid(ewkb) AS shape FROM raw", "UPDATE raw SET blob = shape::bytea FROM town",
                        "CREATE TABLE texts AS SELECT wt_as_text(shape) AS text FROM town")
             say("EWKB", f"{int(server.ask('SELECT length(ewkb) FROM raw')) / 1e6:9.1f} MB")
             for call in CALLS:

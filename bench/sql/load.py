@@ -14,7 +14,7 @@ import pathlib
 import subprocess
 import sys
 
-from rows import ROOT, Server, say
+from rows import ROOT, Server, copy_solids, say
 
 sys.path.insert(0, str(ROOT / "tests" / "siege"))
 from service import temporary_folder  # noqa: E402
@@ -24,12 +24,7 @@ BATCH = 100
 
 def valid_solids(server, build, document):
     """The EWKB of the document's valid solids, hexadecimal."""
-    rows = server.folder / "rows"
-    with rows.open("w") as out:
-        subprocess.run([f"{build}/bin/watertight", "rows", str(document)], check=True, stdout=out)
-    server.ask("CREATE TABLE delivery (feature text, object text, lod text, ewkb bytea)")
-    with rows.open() as source:
-        server.ask("COPY delivery FROM STDIN", stdin=source)
+    copy_solids(server, build, [document], "delivery")
     found = server.ask("SELECT encode(ewkb, 'hex') FROM delivery WHERE wt_try_solid(ewkb) IS NOT NULL", "DROP TABLE delivery").split()
     if not found:
         raise SystemExit(f"load: {document} has no valid solid")

@@ -60,6 +60,16 @@ def say(what, value):
     print(f"{what:62} {value}", flush=True)
 
 
+def copy_solids(server, build, documents, table):
+    """Makes a table of the solids of documents as they are: feature, object, lod, ewkb."""
+    file = server.folder / table
+    with file.open("w") as out:
+        subprocess.run([f"{build}/bin/watertight", "rows", *map(str, documents)], check=True, stdout=out)
+    server.ask(f"CREATE TABLE {table} (feature text, object text, lod text, ewkb bytea)")
+    with file.open() as source:
+        server.ask(f"COPY {table} FROM STDIN", stdin=source)
+
+
 def load(server, build, documents, rows):
     rows_file = server.folder / "rows"
     with rows_file.open("w") as out:

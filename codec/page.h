@@ -21,13 +21,18 @@ inline constexpr std::size_t kMaxPageSolids = 256;
 Result<std::vector<Decoded>> decode_page(ByteView page, const Limits& limits = {});
 
 /// The solids of blobs as one page. Nothing unless that has fewer bytes than the blobs and
-/// blob_of() makes these very blobs of its solids: a single blob, other grids or acceptances,
-/// Steiner vertices and options of encode() that are not the default ones have no page. Cost: that
-/// of encoding the solids twice. Errors: those of decode().
+/// blob_in_page() makes these very blobs of it: a single blob, other grids or acceptances, Steiner
+/// vertices and options of encode() that are not the default ones have no page. Cost: that of
+/// encoding the solids twice. Errors: those of decode().
 Result<std::optional<Bytes>> page_of_blobs(std::span<const ByteView> blobs);
 
+/// The blob of the solid at index `number` of a page that page_of_blobs() made: one of the blobs
+/// that it was given, so nothing is decoded again to verify it. Cost: decode_page() and a third of
+/// encode(). Errors: those of decode_page(); invalid_argument if the page has no such solid.
+Result<Bytes> blob_in_page(ByteView page, std::size_t number, const Limits& limits = {});
+
 /// The blob that encode() makes of a decoded solid by default, with the acceptance that it claims.
-/// For solids of page_of_blobs(). Cost: that of encode(). Errors: not_encodable.
+/// For solids of any page. Cost: that of encode(). Errors: not_encodable.
 Result<Bytes> blob_of(const Decoded& decoded);
 
 }  // namespace watertight::codec

@@ -174,15 +174,19 @@ Result<std::uint8_t> read_layout(ByteReader& reader, PageKind kind) {
 
 }  // namespace
 
-PageSolid page_solid(const OrientedBoundary& boundary, bool keeps_order) {
+PageSolid page_solid(geometry::CanonicalSolid canonical, bool keeps_order) {
   PageSolid solid;
-  solid.canonical = geometry::canonical_form(boundary);
+  solid.canonical = std::move(canonical);
   solid.keeps_order = keeps_order && !solid.canonical->order.is_identity();
   if (auto gridded = grid_solid(solid.canonical->boundary.solid())) {
     solid.integers = std::move(gridded->solid);
     solid.origin = gridded->origin;
   }
   return solid;
+}
+
+PageSolid page_solid(const OrientedBoundary& boundary, bool keeps_order) {
+  return page_solid(geometry::canonical_form(boundary), keeps_order);
 }
 
 Frame frame_of(const Solid& solid, const Acceptance& acceptance) {

@@ -51,6 +51,7 @@ Result<StoredPage> read_page_bytes(ByteView bytes, PageKind kind, const Limits& 
 /// Returns the canonical form of a boundary, with its integers if its coordinates are on a grid.
 /// The mode is not chosen yet. `keeps_order`: the page shall have the source order, unless that is
 /// the identity.
+PageSolid page_solid(geometry::CanonicalSolid canonical, bool keeps_order);
 PageSolid page_solid(const OrientedBoundary& boundary, bool keeps_order);
 /// The frame of a page that can hold `solid`. Cost: linear.
 Frame frame_of(const Solid& solid, const Acceptance& acceptance);

@@ -72,12 +72,10 @@ Result<std::vector<Decoded>> decode_solids(const store::FeatureRecord& feature,
 Result<Bytes> blob_of(const store::FeatureRecord& feature, std::size_t solid,
                       const Limits& limits) {
   if (!is_in_page(feature, feature.solids[solid])) return feature.solids[solid].blob;
-  const auto of_page = decode_own_page(feature, limits);
-  if (!of_page) return of_page.error();
   const auto before = std::count_if(
       feature.solids.begin(), feature.solids.begin() + static_cast<std::ptrdiff_t>(solid),
       [&](const StoredSolid& other) { return is_in_page(feature, other); });
-  return codec::blob_of((*of_page)[static_cast<std::size_t>(before)]);
+  return codec::blob_in_page(feature.page, static_cast<std::size_t>(before), limits);
 }
 
 }  // namespace watertight::pipeline

@@ -430,7 +430,12 @@ TEST_CASE("blobs of one grid share a page, and come back from it") {
     const auto blob = codec::blob_of((*decoded)[i]);
     REQUIRE(blob);
     CHECK(*blob == blobs[i]);
+    const auto in_page = codec::blob_in_page(*page, i);
+    REQUIRE(in_page);
+    CHECK(*in_page == blobs[i]);
   }
+  CHECK(codec::blob_in_page(*page, 3).error().code == ErrorCode::invalid_argument);
+  CHECK(codec::blob_in_page(blobs[0], 0).error().code == ErrorCode::malformed);
   // The page goes into a page file as it is, beside others.
   codec::PageFileWriter writer;
   writer.add_page(*page, 3);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "columns/keyed_hash.h"
+#include "columns/noted_array.h"
 
 namespace watertight::columns {
 
@@ -25,7 +26,7 @@ class FlatMap {
   }
   Value& operator[](Key key) {
     if (2 * size_ >= slots_.size()) grow();
-    Slot& slot = slots_[slot_of(key)];
+    Slot& slot = slots_.change(slot_of(key));
     if (!slot.is_used) {
       slot = {key, true, Value{}};
       ++size_;
@@ -34,8 +35,13 @@ class FlatMap {
   }
   std::size_t size() const { return size_; }
   void clear() {
-    slots_.clear();
+    slots_.replace({});
     size_ = 0;
+  }
+  /// Makes this copy of a map that has not changed since equal to it again.
+  void revert(const FlatMap& original) {
+    slots_.revert(original.slots_);
+    size_ = original.size_;
   }
 
  private:
@@ -53,14 +59,14 @@ class FlatMap {
     return at;
   }
   void grow() {
-    std::vector<Slot> old(slots_.empty() ? kFirstSlots : 2 * slots_.size());
-    std::swap(old, slots_);
+    std::vector<Slot> old =
+        slots_.replace(std::vector<Slot>(slots_.empty() ? kFirstSlots : 2 * slots_.size()));
     for (Slot& slot : old) {
-      if (slot.is_used) slots_[slot_of(slot.key)] = std::move(slot);
+      if (slot.is_used) slots_.change(slot_of(slot.key)) = std::move(slot);
     }
   }
 
-  std::vector<Slot> slots_;  // a power of two of them
+  NotedArray<Slot> slots_;  // a power of two of them
   std::size_t size_ = 0;
 };
 

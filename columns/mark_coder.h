@@ -28,6 +28,13 @@ class MarkCoder {
   }
   /// Starts another text.
   void restart();
+  /// Makes this copy of a coder that has not changed since equal to it again.
+  void revert(const MarkCoder& original) {
+    marks_.revert(original.marks_);
+    candidates_.revert(original.candidates_);
+    last_ = original.last_;
+    before_last_ = original.before_last_;
+  }
   /// Codes a mark; its text stays where it is until the next one. `last_value` stands for the value
   /// before it. The stream fails when a text that is read is longer than `most_bytes`.
   Mark code(EntropyStream& stream, ContextMixer& mixer, StringCoder& strings, const Place& place,

@@ -30,6 +30,22 @@ void ValueCoder::restart() {
   last_number_.reset();
 }
 
+void ValueCoder::revert(const ValueCoder& original) {
+  values_.revert(original.values_);
+  affixes_.revert(original.affixes_);
+  candidates_.revert(original.candidates_);
+  column_of_.revert(original.column_of_);
+  columns_ = original.columns_;
+  numbers_.resize(original.numbers_.size());
+  origins_.revert(original.origins_);
+  uuids_.revert(original.uuids_);
+  index_of_.revert(original.index_of_);
+  last_ = original.last_;
+  before_last_ = original.before_last_;
+  last_known_ = original.last_known_;
+  last_number_ = original.last_number_;
+}
+
 void ValueCoder::make_indexes() {
   for (std::uint32_t column = 0; column < columns_.size(); ++column) {
     const std::vector<std::uint32_t>& values = columns_[column].values;
@@ -268,7 +284,7 @@ std::uint32_t ValueCoder::add(std::string_view text, const std::optional<FormedN
   const std::uint32_t value = values_.add(text);
   if (value == numbers_.size()) {
     numbers_.push_back(number);
-    origins_.emplace_back();
+    origins_.push_back({});
   }
   return value;
 }
@@ -282,7 +298,7 @@ void ValueCoder::learn(EntropyStream& stream, const Context& context, Kind kind,
       index_of_[key_of(context.number, value)] = static_cast<std::uint32_t>(column.values.size());
     }
     if (origins_[value].index == kNotListed) {
-      origins_[value] = {context.number, static_cast<std::uint32_t>(column.values.size())};
+      origins_.change(value) = {context.number, static_cast<std::uint32_t>(column.values.size())};
     }
     column.values.push_back(value);
   }

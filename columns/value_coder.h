@@ -18,6 +18,7 @@
 #include "columns/models/number_coder.h"
 #include "columns/models/string_coder.h"
 #include "columns/models/uuid.h"
+#include "columns/noted_array.h"
 #include "columns/place.h"
 #include "columns/value_table.h"
 
@@ -26,6 +27,8 @@ namespace watertight::columns {
 class ValueCoder {
  public:
   explicit ValueCoder(int slot_bits) : candidates_(slot_bits) { add({}); }
+  /// Makes this copy of a coder that has not changed since equal to it again.
+  void revert(const ValueCoder& original);
   /// Starts another text.
   void restart();
   /// Codes a value; returns its text, which stays where it is until the next one. The stream fails
@@ -106,7 +109,7 @@ class ValueCoder {
   FlatMap<Hash, std::uint32_t> column_of_;            // the number of a column
   std::vector<Column> columns_;                       // by number
   std::vector<std::optional<FormedNumber>> numbers_;  // of values that are numbers
-  std::vector<Origin> origins_;                       // of values
+  NotedArray<Origin> origins_;                        // of values
   UuidCoder uuids_;
   /// Where a column lists a value, by column and value. Empty for a reader.
   FlatMap<std::uint64_t, std::uint32_t> index_of_;

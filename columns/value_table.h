@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "columns/keyed_hash.h"
+#include "columns/noted_array.h"
 
 namespace watertight::columns {
 
@@ -27,7 +28,7 @@ class ValueTable {
   std::uint32_t add(std::string_view text) {
     if (2 * entries_.size() >= slots_.size()) grow();
     const std::uint32_t hash = static_cast<std::uint32_t>(keyed_hash(text));
-    std::uint32_t& slot = slots_[slot_of(text, hash)];
+    std::uint32_t& slot = slots_.change(slot_of(text, hash));
     if (slot == 0) {
       entries_.push_back({characters_.size(), text.size(), hash});
       characters_ += text;
@@ -39,6 +40,12 @@ class ValueTable {
   std::string_view text(std::uint32_t number) const {
     const Entry& entry = entries_[number];
     return std::string_view(characters_).substr(entry.begin, entry.size);
+  }
+  /// Makes this copy of a table that has not changed since equal to it again.
+  void revert(const ValueTable& original) {
+    characters_.resize(original.characters_.size());
+    entries_.resize(original.entries_.size());
+    slots_.revert(original.slots_);
   }
   std::uint32_t size() const { return static_cast<std::uint32_t>(entries_.size()); }
 
@@ -60,17 +67,17 @@ class ValueTable {
     return at;
   }
   void grow() {
-    slots_.assign(slots_.empty() ? kFirstSlots : 2 * slots_.size(), 0);
+    slots_.replace(std::vector<std::uint32_t>(slots_.empty() ? kFirstSlots : 2 * slots_.size(), 0));
     for (std::uint32_t number = 0; number < size(); ++number) {
       std::size_t at = entries_[number].hash & (slots_.size() - 1);
       while (slots_[at] != 0) at = (at + 1) & (slots_.size() - 1);
-      slots_[at] = number + 1;
+      slots_.change(at) = number + 1;
     }
   }
 
   std::string characters_;
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> slots_;  // 0, or the number of a text and 1; a power of two of them
+  NotedArray<std::uint32_t> slots_;  // 0, or the number of a text and 1; a power of two of them
 };
 
 }  // namespace watertight::columns

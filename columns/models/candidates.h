@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "columns/models/context_mixer.h"
+#include "columns/noted_array.h"
 
 namespace watertight::columns {
 
@@ -21,7 +21,8 @@ struct Candidate {
 class Candidates {
  public:
   explicit Candidates(int slot_bits)
-      : shift_(32 - slot_bits), slots_(std::size_t{1} << static_cast<unsigned>(slot_bits)) {}
+      : shift_(32 - slot_bits),
+        slots_(std::size_t{1} << static_cast<unsigned>(slot_bits), Slot{}) {}
 
   std::optional<Candidate> find(Hash facts) const {
     const Slot& slot = slots_[facts >> static_cast<unsigned>(shift_)];
@@ -29,7 +30,7 @@ class Candidates {
     return Candidate{slot.value, slot.trust};
   }
   void learn(Hash facts, std::uint32_t value) {
-    Slot& slot = slots_[facts >> static_cast<unsigned>(shift_)];
+    Slot& slot = slots_.change(facts >> static_cast<unsigned>(shift_));
     const bool is_known = slot.is_used && slot.check == check_of(facts);
     if (is_known && slot.value == value) {
       if (slot.trust < kMostTrust) ++slot.trust;
@@ -39,6 +40,9 @@ class Candidates {
       slot = {value, check_of(facts), 0, true};
     }
   }
+
+  /// Makes this copy of candidates that have not changed since equal to them again.
+  void revert(const Candidates& original) { slots_.revert(original.slots_); }
 
  private:
   static constexpr std::uint8_t kMostTrust = 15;
@@ -50,7 +54,7 @@ class Candidates {
     bool is_used = false;
   };
   int shift_;
-  std::vector<Slot> slots_;
+  NotedArray<Slot> slots_;
 };
 
 }  // namespace watertight::columns

@@ -45,7 +45,8 @@ ContextMixer::ContextMixer(int table_bits)
       weights_(static_cast<std::size_t>(Question::count) * kSteps) {}
 
 void ContextMixer::soften(std::uint32_t most_answers, std::uint32_t most_mixed) {
-  for (std::uint32_t& counter : counters_) {
+  for (std::size_t i = 0; i < counters_.size(); ++i) {
+    std::uint32_t& counter = counters_.change(i);
     counter = (counter & ~kCountBits) | std::min(counter & kCountBits, most_answers);
   }
   for (Weights& weights : weights_) weights.seen = std::min(weights.seen, most_mixed);

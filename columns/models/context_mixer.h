@@ -16,6 +16,7 @@
 
 #include "codec/entropy/counter.h"
 #include "codec/entropy/entropy_stream.h"
+#include "columns/noted_array.h"
 
 namespace watertight::columns {
 
@@ -101,6 +102,12 @@ class ContextMixer {
   /// changes it soon.
   void soften(std::uint32_t most_answers, std::uint32_t most_mixed);
 
+  /// Makes this copy of a mixer that has not changed since equal to it again.
+  void revert(const ContextMixer& original) {
+    counters_.revert(original.counters_);
+    weights_ = original.weights_;
+  }
+
   /// Codes a yes or no.
   bool flag(EntropyStream& stream, Question question, ContextList contexts, bool value);
   /// Codes the lowest `bits` bits of a number, high ones first.
@@ -112,11 +119,12 @@ class ContextMixer {
                        std::uint64_t value, int modelled);
 
   /// The counter of a context.
-  std::uint32_t* counter(Hash context) { return &counters_[context >> shift_]; }
+  std::uint32_t* counter(Hash context) { return &counters_.change(context >> shift_); }
   /// The counters of four decisions in a row, each of which knows the answers before it: that of a
   /// decision is the one at 1 and the answers before it.
   std::uint32_t* group(Hash context) {
-    return &counters_[(context >> shift_) & ~((1U << kGroupBits) - 1)];
+    static_assert(kGroupBits <= NotedArray<std::uint32_t>::kBlockBits);
+    return &counters_.change((context >> shift_) & ~((1U << kGroupBits) - 1));
   }
   static constexpr int kGroupBits = 4;
   /// Codes one decision, the `step`-th of an answer.
@@ -150,7 +158,7 @@ class ContextMixer {
                             std::uint64_t value, int modelled);
 
   unsigned shift_;
-  std::vector<std::uint32_t> counters_;
+  NotedArray<std::uint32_t> counters_;
   std::vector<Weights> weights_;
 };
 

@@ -20,6 +20,15 @@ class StringCoder {
   std::string_view code(EntropyStream& stream, ContextMixer& mixer, Hash column,
                         std::string_view text, std::size_t most_bytes);
 
+  /// Makes this copy of a coder that has not changed since equal to it again.
+  void revert(const StringCoder& original) {
+    history_.resize(original.history_.size());
+    last_of_column_.revert(original.last_of_column_);
+    after_three_.revert(original.after_three_);
+    is_over_limit_ = original.is_over_limit_;
+    before_ = original.before_;
+  }
+
   /// Whether a string was longer than it may be.
   bool is_over_limit() const { return is_over_limit_; }
 

@@ -36,6 +36,12 @@ class UuidCoder {
   /// Codes the digits of a UUID and the case of its letters.
   Uuid code(EntropyStream& stream, ContextMixer& mixer, Hash column, const Uuid& uuid);
 
+  /// Makes this copy of a coder that has not changed since equal to it again.
+  void revert(const UuidCoder& original) {
+    known_.revert(original.known_);
+    last_ = original.last_;
+  }
+
   /// Whether a UUID was coded before.
   bool knows(const Uuid& uuid) const { return number_of(uuid).has_value(); }
 

@@ -258,14 +258,17 @@ Result<std::vector<Twins>> read_twins(DatabaseSession& connection, const std::st
   const auto key = key_of_collection(connection, collection);
   if (!key) return key.error();
   const std::vector<std::string_view> wanted(ids.begin(), ids.end());
+  // One other feature is enough, however many there are. OFFSET and LIMIT make the planner look
+  // into an index for each id, also before it knows how large the table is.
   const Result<Rows> rows = connection.ask(
-      "SELECT DISTINCT ON (f.id COLLATE \"C\") f.id, g.id FROM unnest($2::text[]) AS u (id)"
-      " JOIN watertight.feature_row f ON f.collection = $1::int4"
-      " AND hashtextextended(f.id, 0) = hashtextextended(u.id, 0) AND f.id = u.id"
-      " JOIN watertight.feature_row g ON g.collection = f.collection AND g.place = f.place"
+      "SELECT f.id, other.id FROM unnest($2::text[]) AS u (id)"
+      " CROSS JOIN LATERAL (SELECT * FROM watertight.feature_row f WHERE f.collection = $1::int4"
+      " AND hashtextextended(f.id, 0) = hashtextextended(u.id, 0) AND f.id = u.id OFFSET 0) AS f"
+      " CROSS JOIN LATERAL (SELECT g.id FROM watertight.feature_row g"
+      " WHERE g.collection = f.collection AND g.place = f.place"
       " AND g.id <> f.id AND g.min_x = f.min_x AND g.min_y = f.min_y AND g.min_z = f.min_z"
-      " AND g.max_x = f.max_x AND g.max_y = f.max_y AND g.max_z = f.max_z"
-      " ORDER BY f.id COLLATE \"C\", g.id COLLATE \"C\"",
+      " AND g.max_x = f.max_x AND g.max_y = f.max_y AND g.max_z = f.max_z LIMIT 1) AS other"
+      " ORDER BY f.id COLLATE \"C\"",
       Parameters().text(*key).text_array(wanted));
   if (!rows) return rows.error();
   std::vector<Twins> found;

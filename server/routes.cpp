@@ -217,7 +217,7 @@ const std::vector<Route>& item_routes() {
        {std::begin(kStoreParameters), std::end(kStoreParameters)}},
       {"GET",
        "/collections/{collectionId}/items/{itemId}",
-       reading,
+       quick,
        read,
        get_item,
        {"f", "solid", "crs", "lod", "profile"}},
@@ -311,7 +311,7 @@ Response respond(const Service& service, const Request& request, const CancelPol
   const Route* route = route_of(request);
   Response response = routed(service, request, is_cancelled);
   // Answers that are made at once keep all others waiting, so nothing is computed for them.
-  if (route != nullptr && route->lane != Lane::quick) {
+  if (route != nullptr && (route->lane != Lane::quick || response.further)) {
     response = with_coding(request, std::move(response));
   }
   return with_leave_to_read(service.options.cors_origin, request, std::move(response));

@@ -225,6 +225,13 @@ std::optional<Response> answered_by_version(const ItemRequest& item) {
   return cached(item, *version);
 }
 
+Response in_lane(Lane lane, std::string key, std::function<Response(const CancelPoll&)> make) {
+  Response response;
+  response.further =
+      std::make_shared<const FurtherWork>(FurtherWork{lane, std::move(key), std::move(make)});
+  return response;
+}
+
 /// Reads the feature and makes its representation; leaves a large one to the lane for that.
 Response read_and_represent(const ItemRequest& item, const CancelPoll& is_cancelled) {
   auto feature = item.service.store->get(item.collection, item.id);
@@ -233,12 +240,29 @@ Response read_and_represent(const ItemRequest& item, const CancelPoll& is_cancel
     return represented(*std::move(feature), item, is_cancelled);
   }
   const auto large = std::make_shared<StoredFeature>(*std::move(feature));
-  Response response;
-  response.further = std::make_shared<const FurtherWork>(
-      FurtherWork{Lane::computing, {}, [large, item](const CancelPoll& is_stopped) {
-                    return represented(std::move(*large), item, is_stopped);
-                  }});
-  return response;
+  return in_lane(Lane::computing, {}, [large, item](const CancelPoll& is_stopped) {
+    return represented(std::move(*large), item, is_stopped);
+  });
+}
+
+/// The work that makes the answer; `kept` is the answer that the cache had when it was asked for.
+Response to_be_made(const ItemRequest& item, const RepresentationCache::Answer& kept) {
+  return in_lane(Lane::items, item.key(), [item, kept](const CancelPoll& is_cancelled) {
+    // A request for the same may have been answered meanwhile.
+    if (kept_answer(item) != kept) {
+      if (auto answered = answered_by_version(item)) return *std::move(answered);
+    }
+    return read_and_represent(item, is_cancelled);
+  });
+}
+
+/// The answer that the version gives, or the work that makes one.
+Response answered_or_to_be_made(const ItemRequest& item) {
+  const auto kept = kept_answer(item);
+  if (has_precondition(item.message) || kept) {
+    if (auto answered = answered_by_version(item)) return *std::move(answered);
+  }
+  return to_be_made(item, kept);
 }
 
 /// The links of a feature to itself, its collection and its profile (RFC 8288).
@@ -270,42 +294,37 @@ Response get_item(const RoutedRequest& request) {
   if (solid != nullptr && format->parameter != "blob") {
     return refuse(400, "invalid-argument", "the parameter solid is for f=blob only");
   }
-  FeatureForm form{false, PlaceSystem::storage, std::nullopt};
   const bool is_json_fg = format->parameter == "jsonfg" ||
                           (format->parameter == "geojson" && wants_json_fg(request.target));
-  if (format->parameter == "geojson" || format->parameter == "jsonfg") {
-    const auto collection = request.service.store->collection(request.target.segments[1]);
-    if (!collection) return to_response(to_problem(collection.error()));
-    const auto wanted = FeatureForm::of_request(request.target, collection->srid, is_json_fg);
-    if (!wanted) return to_response(to_problem(wanted.error()));
-    form = *wanted;
-  } else if (request.target.parameter("crs") != nullptr ||
-             request.target.parameter("lod") != nullptr) {
+  const bool has_form = is_json_fg || format->parameter == "geojson";
+  const bool states_form =
+      request.target.parameter("crs") != nullptr || request.target.parameter("lod") != nullptr;
+  if (states_form && !has_form) {
     return refuse(400, "invalid-argument",
                   "the parameters crs and lod are for f=geojson and f=jsonfg only");
   }
-  const ItemRequest item{request.service,
-                         request.target.segments[1],
-                         request.target.segments[3],
-                         *format,
-                         solid == nullptr ? std::string() : *solid,
-                         std::move(form),
-                         request.request,
-                         links_of_item(request, is_json_fg)};
-  const auto kept = kept_answer(item);
-  if (has_precondition(request.request) || kept) {
-    if (auto answered = answered_by_version(item)) return *std::move(answered);
+  ItemRequest item{request.service,
+                   request.target.segments[1],
+                   request.target.segments[3],
+                   *format,
+                   solid == nullptr ? std::string() : *solid,
+                   FeatureForm{false, PlaceSystem::storage, std::nullopt},
+                   request.request,
+                   has_form ? links_of_item(request, is_json_fg) : std::string()};
+  if (!has_form && !has_precondition(request.request) && kept_answer(item) == nullptr) {
+    return to_be_made(item, nullptr);
   }
-  Response response;
-  response.further = std::make_shared<const FurtherWork>(
-      FurtherWork{Lane::small, item.key(), [item, kept](const CancelPoll& is_cancelled) {
-                    // A request for the same may have been answered meanwhile.
-                    if (kept_answer(item) != kept) {
-                      if (auto answered = answered_by_version(item)) return *std::move(answered);
-                    }
-                    return read_and_represent(item, is_cancelled);
-                  }});
-  return response;
+  return in_lane(Lane::reading, {}, [=, target = request.target](const CancelPoll&) {
+    ItemRequest formed = item;
+    if (has_form) {
+      const auto collection = item.service.store->collection(item.collection);
+      if (!collection) return to_response(to_problem(collection.error()));
+      const auto form = FeatureForm::of_request(target, collection->srid, is_json_fg);
+      if (!form) return to_response(to_problem(form.error()));
+      formed.form = *form;
+    }
+    return answered_or_to_be_made(formed);
+  });
 }
 
 Response delete_item(const RoutedRequest& request) {

@@ -47,9 +47,10 @@ struct Request {
 };
 
 /// The threads that answer a request. Quick requests are answered on the I/O thread, whatever the
-/// others do. Requests that only wait for the database, those that compute little, and those that
-/// may compute long each have threads of their own, so that none waits for one of another kind.
-enum class Lane : std::uint8_t { quick, reading, small, computing };
+/// others do. Requests that only wait for the database, those for one small item that no cache has,
+/// those that compute little, and those that may compute long each have threads of their own, so
+/// that none waits for one of another kind.
+enum class Lane : std::uint8_t { quick, reading, items, small, computing };
 
 /// The next part of a body; "" after the last. An error cuts the answer off, whose status has been
 /// sent. The work ends early, by an error, once the poll says that nobody waits for the part.

@@ -225,7 +225,7 @@ void AsioServer::stop() {
   is_noted.get_future().wait();
   if (environment_.application.interrupt) environment_.application.interrupt();
   // Engines notice the cancellation within moments; no thread may outlive what it refers to.
-  for (const Lane lane : {Lane::computing, Lane::small, Lane::reading}) {
+  for (const Lane lane : {Lane::computing, Lane::small, Lane::items, Lane::reading}) {
     environment_.threads_of(lane).threads.join();
   }
   environment_.disk.join();

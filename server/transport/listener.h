@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "base/cancel.h"
 #include "base/result.h"
@@ -76,9 +77,12 @@ struct ServerOptions {
   std::size_t computing_threads = 2;
   std::size_t small_threads = 16;  // most of the time they wait for the database
   std::size_t reading_threads = 4;
+  /// They compute half the time: more would take turns on the processors.
+  std::size_t item_threads = std::thread::hardware_concurrency() + 1;
   std::size_t computing_queue = 64;  // requests waiting for a computing thread; more get 503
   std::size_t small_queue = 1000;
   std::size_t reading_queue = 5000;
+  std::size_t item_queue = 1000;
   std::size_t downloads = 16;  // answers in parts (Response::rest) at once; more get 503
   std::size_t watchers = 64;   // the same, of those with pauses (Response::pause)
   std::size_t uploads = 64;    // bodies that go to a sink at once; more get 503

@@ -99,7 +99,6 @@ class KeyShare {
   KeyShare(SessionEnvironment& environment, std::string key,
            const ClientStream::executor_type& executor)
       : environment_(environment), key_(std::move(key)) {
-    if (key_.empty()) return;
     const auto never = Clock::time_point::max();
     environment_.keys.emplace(key_, std::make_shared<asio::steady_timer>(executor, never));
   }
@@ -331,18 +330,21 @@ awaitable<Response> Session::run(Lane lane, const std::function<Response()>& mak
   co_return co_await asio::co_spawn(threads.threads.get_executor(), std::move(work), use_awaitable);
 }
 
-/// Does the further work of an answer, after works with the same key that have begun before.
+/// Does the further works of an answer: from the first one with a key on, after those with the same
+/// key that have begun before.
 awaitable<Response> Session::finish(const std::shared_ptr<const FurtherWork>& first,
                                     const CancelPoll& cancel) {
   std::shared_ptr<const FurtherWork> work = first;
-  const auto other = environment_.keys.find(work->key);
-  if (other != environment_.keys.end()) {
-    const auto turn = other->second;
-    error_code ignored;
-    co_await turn->async_wait(redirect_error(use_awaitable, ignored));
-  }
-  const KeyShare key(environment_, work->key, stream_.get_executor());
+  std::optional<KeyShare> key;
   for (;;) {
+    const bool begins_key = !key && !work->key.empty();
+    const auto other = begins_key ? environment_.keys.find(work->key) : environment_.keys.end();
+    if (other != environment_.keys.end()) {
+      const auto turn = other->second;
+      error_code ignored;
+      co_await turn->async_wait(redirect_error(use_awaitable, ignored));
+    }
+    if (begins_key) key.emplace(environment_, work->key, stream_.get_executor());
     const std::function<Response()> make = [&work, &cancel] { return work->make(cancel); };
     Response response = co_await run(work->lane, make, cancel);
     if (!response.further) co_return response;
@@ -536,6 +538,7 @@ SessionEnvironment::SessionEnvironment(const ServerOptions& server_options,
       computing(server_options.computing_threads, server_options.computing_queue),
       small(server_options.small_threads, server_options.small_queue),
       reading(server_options.reading_threads, server_options.reading_queue),
+      items(server_options.item_threads, server_options.item_queue),
       bodies(server_options.body_bytes_together),
       downloads(server_options.downloads),
       watchers(server_options.watchers),
@@ -549,8 +552,16 @@ awaitable<void> run_session(std::shared_ptr<Connection> connection,
 }
 
 LaneThreads& SessionEnvironment::threads_of(Lane lane) {
-  if (lane == Lane::reading) return reading;
-  return lane == Lane::small ? small : computing;
+  switch (lane) {
+    case Lane::reading:
+      return reading;
+    case Lane::items:
+      return items;
+    case Lane::small:
+      return small;
+    default:
+      return computing;
+  }
 }
 
 awaitable<void> refuse_session(std::shared_ptr<Connection> connection, Response refusal) {

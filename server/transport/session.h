@@ -106,6 +106,7 @@ struct SessionEnvironment {
   LaneThreads computing;
   LaneThreads small;
   LaneThreads reading;
+  LaneThreads items;
   Budget bodies;
   Budget downloads;
   Budget watchers;

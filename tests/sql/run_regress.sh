@@ -6,10 +6,11 @@
 set -euo pipefail
 # shellcheck source=tests/unprivileged.sh
 . "$(dirname "$0")/../unprivileged.sh"
+# shellcheck source=tests/sql/regression.sh
+. "$(dirname "$0")/regression.sh"
 source=$(cd "$1" && pwd)
 build=$(cd "$2" && pwd)
 program=${3:-}
-tests=(city functions encode repairs curved hostile helpers limits rules solid solid_index solid_pairs)
 
 folder=$(mktemp -d /tmp/watertight-sql-XXXXXX)
 started=no
@@ -23,32 +24,14 @@ cleanup() {
 }
 trap cleanup EXIT
 
-bin=$("$source/scripts/relocated-postgres" "$build" "$folder/prefix")
-regress=$(dirname "$(pg_config --pgxs)")/../test/regress/pg_regress
-cp -r "$source/tests/sql/sql" "$source/tests/sql/expected" "$folder/"
-mkdir "$folder/socket" "$folder/crashing" "$folder/hanging"
-printf '#!/bin/sh\nkill -SEGV $$\n' >"$folder/crashing/watertight-worker"
-cp "$(command -v sleep)" "$folder/hanging/sleep"
-printf '#!/bin/sh\nexec %s 600\n' "$folder/hanging/sleep" >"$folder/hanging/watertight-worker"
-for fake in crashing hanging; do
-  chmod +x "$folder/$fake/watertight-worker"
-  cp "$folder/$fake/watertight-worker" "$folder/$fake/watertight-tetgen"
-done
-hand_over "$folder"
-chmod 0700 "$folder"
-
-cd "$folder"
-run "$bin/initdb" -D "$folder/data" -N --username=watertight --encoding=UTF8 --no-locale \
-  --auth=trust >"$folder/initdb.log" || { cat "$folder/initdb.log"; exit 1; }
+prepare "$source" "$build" "$folder"
 run "$bin/pg_ctl" -D "$folder/data" -w -s -l "$folder/server.log" \
   -o "-c listen_addresses= -c unix_socket_directories=$folder/socket -c fsync=off" start ||
   { cat "$folder/server.log"; exit 1; }
 started=yes
 connect=(-h "$folder/socket" -U watertight)
 
-if ! run env LD_LIBRARY_PATH= PGTZ=UTC "$regress" --inputdir="$folder" --outputdir="$folder" \
-  --bindir="$bin" --host="$folder/socket" --user=watertight --load-extension=watertight \
-  "${tests[@]}"; then
+if ! regress "${regression_tests[@]}"; then
   cat "$folder/regression.diffs" || true
   tail -20 "$folder/server.log"
   exit 1

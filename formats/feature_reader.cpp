@@ -28,16 +28,6 @@ bool has_whole_line(std::string_view text) {
   return text[text.find_last_not_of(" \t\r", end - 1)] == '}';
 }
 
-Error in_line(Error error, const FeatureText& text) {
-  const bool is_cut_off = error.byte_offset && *error.byte_offset + 1 >= text.line.size();
-  error.message = "line " + std::to_string(text.place.line) + ": " + error.message;
-  if (is_cut_off) {
-    error.message += "; each line of a CityJSONSeq must be one complete JSON text";
-  }
-  error.byte_offset = text.place.offset + error.byte_offset.value_or(0);
-  return error;
-}
-
 }  // namespace
 
 Error at_place(Error error, const FeaturePlace& place, const std::string& id) {
@@ -47,6 +37,16 @@ Error at_place(Error error, const FeaturePlace& place, const std::string& id) {
   }
   error.message = "line " + std::to_string(place.line) + ": " + error.message;
   error.byte_offset = place.offset;
+  return error;
+}
+
+Error in_line(Error error, const FeatureText& text) {
+  const bool is_cut_off = error.byte_offset && *error.byte_offset + 1 >= text.line.size();
+  error.message = "line " + std::to_string(text.place.line) + ": " + error.message;
+  if (is_cut_off) {
+    error.message += "; each line of a CityJSONSeq must be one complete JSON text";
+  }
+  error.byte_offset = text.place.offset + error.byte_offset.value_or(0);
   return error;
 }
 

@@ -37,6 +37,9 @@ struct FeatureText {
   std::optional<Feature> ready;
 };
 
+/// Adds the line and its place in the input to an error of reading the line of a sequence.
+Error in_line(Error error, const FeatureText& text);
+
 class FeatureReader {
  public:
   /// Finds the header under which a CityJSONFeature alone is read; "" for none. Errors: any.

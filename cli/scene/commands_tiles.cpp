@@ -28,6 +28,7 @@ namespace watertight::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using formats::CityFeature;
 using tiles::FeatureMesh;
 using tiles::Frame;
 
@@ -72,13 +73,12 @@ class TileRun {
     options.progress = [&](std::uint64_t bytes) {
       bar.show(features_, share_done(features_, reader->feature_count(), bytes, std::nullopt));
     };
-    const auto streamed = pipeline::stream_features(
-        *reader, options,
-        [this](std::uint64_t, const formats::FeatureText& text, Result<Feature> feature) {
-          const std::string id = feature ? feature->id : std::string();
-          auto mesh = std::make_shared<Meshed>(mesh_of(std::move(feature), text.line));
-          return [this, mesh, place = text.place, id]() -> Status {
-            take(std::move(*mesh), place, id);
+    const auto streamed = pipeline::stream_texts(
+        *reader, options, [&](std::uint64_t, Result<formats::FeatureText> text) {
+          auto mesh = std::make_shared<Meshed>(text ? mesh_of(*reader, *std::move(text))
+                                                    : std::move(text).error());
+          return [this, mesh]() -> Status {
+            take(std::move(*mesh));
             return Done{};
           };
         });
@@ -111,10 +111,7 @@ class TileRun {
       auto text = reader.next();
       if (!text) return std::move(text).error();
       if (!*text) return Done{};
-      const formats::FeaturePlace place = (*text)->place;
-      auto feature = reader.read(**text);
-      const std::string id = feature ? feature->id : std::string();
-      take(mesh_of(std::move(feature), (*text)->line), place, id);
+      take(mesh_of(reader, **std::move(text)));
     }
     return Done{};
   }
@@ -130,45 +127,62 @@ class TileRun {
     frame_ = *frame;
   }
 
-  /// `line`: the text of the feature; "" where the document has none.
-  Result<formats::CityFeature> city_feature(const Feature& feature, std::string_view line) const {
-    if (!header_) return formats::city_feature_of(feature);
+  struct Shown {
+    CityFeature city;
+    std::uint32_t srid = 0;
+  };
+
+  /// A feature of a city model from its text alone. Errors have their place.
+  Result<Shown> shown(const formats::FeatureReader& reader, formats::FeatureText& text) const {
     std::optional<std::string_view> lod;
     if (!command_.lod.empty()) lod = command_.lod;
-    if (!line.empty()) return shapes_->read(line, feature.id, lod);
-    const auto text = formats::write_city_json_feature(*header_, feature);
-    if (!text) return text.error();
-    return shapes_->read(*text, feature.id, lod);
+    if (shapes_ && !text.ready) {
+      auto city = shapes_->read(text.line, lod);
+      if (!city) return formats::in_line(std::move(city).error(), text);
+      return Shown{*std::move(city), header_->srid};
+    }
+    const auto feature = reader.read(text);
+    if (!feature) return feature.error();
+    if (!shapes_) return Shown{formats::city_feature_of(*feature), feature->srid};
+    const auto line = formats::write_city_json_feature(*header_, *feature);
+    auto city = line ? shapes_->read(*line, lod) : Result<CityFeature>(line.error());
+    if (!city) return formats::at_place(std::move(city).error(), text.place, feature->id);
+    return Shown{*std::move(city), feature->srid};
   }
 
-  Meshed mesh_of(Result<Feature> feature, std::string_view line) {
-    if (!feature) return std::move(feature).error();
-    auto city = city_feature(*feature, line);
-    if (!city) return std::move(city).error();
-    if (city->is_too_large) {
-      return Error{ErrorCode::limit_exceeded, "the geometry has more vertices than are shown"};
+  /// Errors have their place.
+  Meshed mesh_of(const formats::FeatureReader& reader, formats::FeatureText text) {
+    auto found = shown(reader, text);
+    if (!found) return std::move(found).error();
+    CityFeature& city = found->city;
+    std::string id = city.id;
+    if (city.is_too_large) {
+      return formats::at_place(
+          {ErrorCode::limit_exceeded, "the geometry has more vertices than are shown"}, text.place,
+          id);
     }
     if (!frame_) {
-      if (city->shapes.positions.empty()) return FeatureMesh{};
-      make_frame(feature->srid, city->shapes.positions.front());
+      if (city.shapes.positions.empty()) return FeatureMesh{};
+      make_frame(found->srid, city.shapes.positions.front());
     }
-    const std::uint32_t srid = feature->srid;
-    return tiles::mesh_of(*std::move(city), std::move(feature->id), std::move(feature->type), srid,
-                          *frame_);
+    std::string type = std::move(city.type);
+    auto mesh = tiles::mesh_of(std::move(city), id, std::move(type), found->srid, *frame_);
+    if (!mesh) return formats::at_place(std::move(mesh).error(), text.place, id);
+    return mesh;
   }
 
-  void take(Meshed mesh, const formats::FeaturePlace& place, const std::string& id) {
+  void take(Meshed mesh) {
     ++features_;
     if (!mesh) {
       ++unread_;
-      complain(file_, formats::at_place(mesh.error(), place, id));
+      complain(file_, mesh.error());
       return;
     }
     if (mesh->unfilled_facets > 0) {
       unfilled_ += mesh->unfilled_facets;
       complain(file_, {ErrorCode::limit_exceeded,
                        quantity(mesh->unfilled_facets, "facet is", "facets are") +
-                           " not shown, whose edges cross too often, in '" + id + "'"});
+                           " not shown, whose edges cross too often, in '" + mesh->id + "'"});
     }
     if (!mesh->is_empty()) meshes_.push_back(*std::move(mesh));
   }

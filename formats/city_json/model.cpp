@@ -286,6 +286,15 @@ Result<CityHeader> city_header(const Json& root) {
   return header;
 }
 
+Result<std::string> feature_id(const Json& root) {
+  if (string_member(root, "type") != "CityJSONFeature") {
+    return malformed_at("the type is not \"CityJSONFeature\"", "/type");
+  }
+  std::string id = string_member(root, "id");
+  if (id.empty()) return malformed_at("the CityJSONFeature has no id", "/id");
+  return id;
+}
+
 Result<ModelIndex> index_city_model(const CityModel& model, std::uint64_t template_count) {
   const Json* objects = find_member(model.root, "CityObjects");
   if (objects == nullptr || !objects->is_object()) {

@@ -92,6 +92,9 @@ struct CitySolid {
 /// The error malformed with a JSON Pointer.
 Error malformed_at(std::string message, std::string pointer);
 
+/// The id that a CityJSONFeature states. Errors: malformed (another type, no id).
+Result<std::string> feature_id(const Json& root);
+
 /// Checks the shape of the document and finds geometries and top-level objects. Geometry instances
 /// may refer to `template_count` templates. Faults of one object become unreadable parts. Errors:
 /// malformed with JSON Pointer.

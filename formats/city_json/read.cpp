@@ -223,10 +223,9 @@ void note_vertices_without_transform(const CityHeader& header, std::vector<std::
 /// `without_transform`: why coordinates are not known if the header has no transform.
 Result<Feature> read_feature_model(CityModel model, const CityHeader& header,
                                    const ReadOptions& options, std::string_view without_transform) {
-  const std::string id = string_member(model.root, "id");
-  if (id.empty()) {
-    return Error{ErrorCode::malformed, "the CityJSONFeature has no id", {}, "/id"};
-  }
+  const auto stated = feature_id(model.root);
+  if (!stated) return stated.error();
+  const std::string& id = *stated;
   auto read = read_model(std::move(model), header, options, without_transform);
   if (!read) return std::move(read).error();
   const Json* object = find_member(*find_member(read->model.root, "CityObjects"), id);
@@ -318,9 +317,6 @@ Result<Feature> read_city_json_feature(const CityHeader& header, std::string_vie
                                        const ReadOptions& options) {
   auto model = parse_city_model(line, CityText::document, options.limits);
   if (!model) return std::move(model).error();
-  if (string_member(model->root, "type") != "CityJSONFeature") {
-    return Error{ErrorCode::malformed, "the type is not \"CityJSONFeature\"", {}, "/type"};
-  }
   auto feature = read_feature_model(std::move(*model), header, options, kSequenceWithout);
   if (feature) {
     if (Status status = check_solid_count(*feature, options.limits); !status) {

@@ -5,9 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <unordered_map>
 
 #include "formats/city_json/city_json.h"
+#include "formats/city_json/model.h"
 #include "formats/text/json.h"
 #include "formats/text/numbers.h"
 
@@ -40,16 +42,59 @@ std::optional<Position> position_of(const Json& value) {
   return position;
 }
 
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr Position kNoPosition{kNoNumber, kNoNumber, kNoNumber};
+
 /// The positions of an array of vertices; one that is no vertex is not finite.
 std::vector<Position> positions_of(const Json* vertices) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<Position> positions;
   if (vertices == nullptr || !vertices->is_array()) return positions;
   positions.reserve(vertices->size());
   for (const Json& vertex : *vertices) {
-    positions.push_back(position_of(vertex).value_or(Position{kNone, kNone, kNone}));
+    positions.push_back(position_of(vertex).value_or(kNoPosition));
   }
   return positions;
+}
+
+std::vector<Position> positions_of(const VertexList& vertices) {
+  std::vector<Position> positions;
+  positions.reserve(vertices.size());
+  for (const auto& [x, y, z] : vertices.integers) {
+    positions.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+  }
+  for (const auto& [x, y, z] : vertices.decimals) {
+    positions.push_back({geometry::rounded(x), geometry::rounded(y), geometry::rounded(z)});
+  }
+  for (const FaultyVertex& faulty : vertices.faulty) positions[faulty.vertex] = kNoPosition;
+  return positions;
+}
+
+/// Stands among boundaries for a value that is neither an array nor a vertex.
+constexpr BoundaryToken kNoVertex = kClose - 1;
+static_assert(kNoVertex >= kMostVertices);
+
+/// Appends boundaries that are JSON values. Recursive; the reader's limit bounds the depth.
+void append_tokens(const Json& value, std::vector<BoundaryToken>& tokens) {
+  if (value.is_array()) {
+    tokens.push_back(kOpen);
+    for (const Json& element : value) append_tokens(element, tokens);
+    tokens.push_back(kClose);
+  } else if (value.is_number_unsigned() && value.get<std::uint64_t>() < kMostVertices) {
+    tokens.push_back(static_cast<BoundaryToken>(value.get<std::uint64_t>()));
+  } else {
+    tokens.push_back(kNoVertex);
+  }
+}
+
+/// The boundaries of a geometry of an object; empty without any. Those that have something else
+/// than vertices were not captured: `own` receives them.
+std::span<const BoundaryToken> boundaries_of(const CityModel& model, const Json& geometry,
+                                             std::vector<BoundaryToken>& own) {
+  const Json* boundaries = find_member(geometry, "boundaries");
+  if (boundaries == nullptr) return {};
+  if (boundaries->is_number_unsigned()) return model.boundary(boundaries->get<std::size_t>());
+  append_tokens(*boundaries, own);
+  return own;
 }
 
 /// The level of detail of a geometry as its document writes it; "" without one.
@@ -127,84 +172,106 @@ class ShapeBuilder {
                const TemplatePlace* place = nullptr)
       : vertices_(vertices), shapes_(shapes), count_(count), place_(place) {}
 
-  void add(const Json& geometry) {
-    const Json* list = find_member(geometry, "boundaries");
-    if (list == nullptr || !list->is_array()) return;
+  /// Adds a geometry with its boundaries.
+  void add(const Json& geometry, std::span<const BoundaryToken> boundaries) {
+    if (boundaries.empty()) return;
+    rest_ = boundaries;
     const std::string type = string_member(geometry, "type");
-    const Json& boundaries = *list;
-    if (type == "MultiLineString") {
-      for (const Json& line : boundaries) {
-        auto positions = ring_of(line, 2);
-        if (!positions.empty()) shapes_.lines.push_back(std::move(positions));
-      }
-    }
-    if (type == "MultiPoint") {
-      for (const std::size_t position : ring_of(boundaries, 1)) shapes_.points.push_back(position);
-    }
     semantics_ = Semantics::of(geometry);
     const Json* values = semantics_.values;
-    if (type == "MultiSurface" || type == "CompositeSurface") add_surfaces(boundaries, values);
-    if (type == "Solid") add_solid(boundaries, values);
-    if (type == "MultiSolid" || type == "CompositeSolid") {
-      for (std::size_t i = 0; i < boundaries.size(); ++i) {
-        add_solid(boundaries[i], Semantics::part(values, i));
-      }
+    if (type == "MultiLineString") {
+      for_each_element([&](std::size_t) {
+        auto positions = take_ring(2);
+        if (!positions.empty()) shapes_.lines.push_back(std::move(positions));
+      });
+    } else if (type == "MultiPoint") {
+      for (const std::size_t position : take_ring(1)) shapes_.points.push_back(position);
+    } else if (type == "MultiSurface" || type == "CompositeSurface") {
+      add_surfaces(values);
+    } else if (type == "Solid") {
+      add_solid(values);
+    } else if (type == "MultiSolid" || type == "CompositeSolid") {
+      for_each_element([&](std::size_t i) { add_solid(Semantics::part(values, i)); });
     }
   }
 
  private:
-  void add_solid(const Json& shells, const Json* values) {
-    if (!shells.is_array()) return;
+  BoundaryToken take() {
+    const BoundaryToken token = rest_.front();
+    rest_ = rest_.subspan(1);
+    return token;
+  }
+
+  /// Takes a value; if it is an array, calls `take_element` with the number of each element.
+  template <class TakeElement>
+  void for_each_element(TakeElement take_element) {
+    if (take() != kOpen) return;
+    for (std::size_t i = 0; rest_.front() != kClose; ++i) take_element(i);
+    take();
+  }
+
+  void add_solid(const Json* values) {
     std::vector<CityShapes::Shell> solid;
-    for (std::size_t i = 0; i < shells.size(); ++i) {
+    for_each_element([&](std::size_t i) {
       const std::size_t first = shapes_.polygons.size();
-      add_surfaces(shells[i], Semantics::part(values, i));
+      add_surfaces(Semantics::part(values, i));
       solid.push_back({first, shapes_.polygons.size() - first});
-    }
+    });
     shapes_.solids.push_back(std::move(solid));
   }
 
-  void add_surfaces(const Json& surfaces, const Json* values) {
-    if (!surfaces.is_array()) return;
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      add_surface(surfaces[i], semantics_.kind(Semantics::part(values, i)));
-    }
+  void add_surfaces(const Json* values) {
+    for_each_element(
+        [&](std::size_t i) { add_surface(semantics_.kind(Semantics::part(values, i))); });
   }
 
-  void add_surface(const Json& rings, FacetKind kind) {
-    if (!rings.is_array()) return;
+  /// Without the exterior ring there is no polygon: a hole would be one.
+  void add_surface(FacetKind kind) {
     CityShapes::Polygon polygon;
-    for (const Json& ring : rings) {
-      auto positions = ring_of(ring, 3);
-      if (!positions.empty()) {
-        polygon.push_back(std::move(positions));
-      } else if (polygon.empty()) {
-        return;  // without the exterior ring the holes would be polygons
+    for_each_element([&](std::size_t i) {
+      if (i > 0 && polygon.empty()) {
+        take_elements();
+        return;
       }
-    }
+      auto positions = take_ring(3);
+      if (!positions.empty()) polygon.push_back(std::move(positions));
+    });
     if (polygon.empty()) return;
     shapes_.polygons.push_back(std::move(polygon));
     shapes_.kinds.push_back(kind);
   }
 
+  /// The elements of an array, with the tokens of arrays within it; none of another value.
+  std::span<const BoundaryToken> take_elements() {
+    const auto all = rest_;
+    std::size_t depth = 0;
+    do {
+      const BoundaryToken token = take();
+      if (token == kOpen) ++depth;
+      if (token == kClose) --depth;
+    } while (depth > 0);
+    const std::size_t size = all.size() - rest_.size();
+    return size < 2 ? all.first(0) : all.subspan(1, size - 2);
+  }
+
   /// The positions of a list of vertices; none if there are fewer than `least`, or one of them does
   /// not exist.
-  CityShapes::Ring ring_of(const Json& list, std::size_t least) {
-    const auto exists = [&](const Json& vertex) {
-      return vertex.is_number_unsigned() && vertex.get<std::uint64_t>() < vertices_.size() &&
-             !std::isnan(vertices_[vertex.get<std::uint64_t>()][0]);
+  CityShapes::Ring take_ring(std::size_t least) {
+    const auto list = take_elements();
+    const auto exists = [&](BoundaryToken vertex) {
+      return vertex < vertices_.size() && !std::isnan(vertices_[vertex][0]);
     };
     CityShapes::Ring ring;
-    if (count_ > kMostShownVertices || !list.is_array() || list.size() < least ||
+    if (count_ > kMostShownVertices || list.size() < least ||
         !std::all_of(list.begin(), list.end(), exists)) {
       return ring;
     }
     count_ += list.size();
-    for (const Json& vertex : list) {
-      const auto index = vertex.get<std::uint64_t>();
-      const auto [place, is_new] = used_.try_emplace(index, shapes_.positions.size());
+    ring.reserve(list.size());
+    for (const BoundaryToken vertex : list) {
+      const auto [place, is_new] = used_.try_emplace(vertex, shapes_.positions.size());
       if (is_new) {
-        shapes_.positions.push_back(place_ ? place_->apply(vertices_[index]) : vertices_[index]);
+        shapes_.positions.push_back(place_ ? place_->apply(vertices_[vertex]) : vertices_[vertex]);
       }
       ring.push_back(place->second);
     }
@@ -215,8 +282,9 @@ class ShapeBuilder {
   CityShapes& shapes_;
   std::size_t& count_;
   const TemplatePlace* place_;
-  Semantics semantics_;  // of the geometry in work
-  std::unordered_map<std::uint64_t, std::size_t> used_;
+  std::span<const BoundaryToken> rest_;  // of the boundaries of the geometry in work
+  Semantics semantics_;                  // of the geometry in work
+  std::unordered_map<BoundaryToken, std::size_t> used_;
 };
 
 /// The double nearest to `value` rounded to so many decimals. A quotient of two doubles that are
@@ -297,12 +365,18 @@ struct Levelled {
 
 CityFeature city_feature_of(const Feature& feature) {
   CityFeature made;
+  made.id = feature.id;
+  made.type = feature.type;
   CityShapes& shapes = made.shapes;
   std::size_t count = 0;
   for (const SubmittedSolid& submitted : feature.solids) {
     const Solid& solid = submitted.solid;
     count += solid.arrays().ring_vertices.size();
-    if (count > kMostShownVertices) return CityFeature{{}, true, {}};
+    made.is_too_large = count > kMostShownVertices;
+    if (made.is_too_large) {
+      shapes = {};
+      return made;
+    }
     const std::size_t first = shapes.positions.size();
     for (Index vertex = 0; vertex < solid.vertex_count(); ++vertex) {
       shapes.positions.push_back(solid.world(vertex));
@@ -336,7 +410,11 @@ struct CityFeatureReader::Header {
   std::optional<std::array<int, 3>> decimals;
   Position scale{1, 1, 1};
   Position translate{};
-  Json templates;  // the list of geometries; null without any
+  struct Template {
+    Json geometry;
+    std::vector<BoundaryToken> boundaries;
+  };
+  std::vector<Template> templates;
   std::vector<Position> template_vertices;
 
   /// The doubles nearest to the decimals that the transform gives; where it has none, to rounding.
@@ -350,7 +428,7 @@ struct CityFeatureReader::Header {
   }
 
   /// The template of an instance; null for other geometries.
-  const Json* template_of(const Json& geometry) const {
+  const Template* template_of(const Json& geometry) const {
     const Json* number = find_member(geometry, "template");
     if (number == nullptr || !number->is_number_unsigned()) return nullptr;
     const auto index = number->get<std::uint64_t>();
@@ -358,8 +436,11 @@ struct CityFeatureReader::Header {
   }
 
   std::vector<Levelled> geometries_of(const Json& object) const;
-  void add_instance(const Json& geometry, const std::vector<Position>& vertices, CityShapes& shapes,
+  void add_instance(const Json& geometry, std::span<const BoundaryToken> boundaries,
+                    const std::vector<Position>& vertices, CityShapes& shapes,
                     std::size_t& count) const;
+  void add_shapes(const CityModel& model, const Json& objects, std::optional<std::string_view> lod,
+                  CityFeature& feature) const;
 };
 
 /// The geometries of a city object. An instance has the level of its template.
@@ -368,35 +449,67 @@ std::vector<Levelled> CityFeatureReader::Header::geometries_of(const Json& objec
   const Json* list = find_member(object, "geometry");
   if (list == nullptr || !list->is_array()) return geometries;
   for (const Json& geometry : *list) {
-    const Json* shape = template_of(geometry);
-    std::string level = level_of(shape == nullptr ? geometry : *shape);
+    const Template* shape = template_of(geometry);
+    std::string level = level_of(shape == nullptr ? geometry : shape->geometry);
     const double rank = rank_of(level);
     geometries.push_back({&geometry, std::move(level), rank});
   }
   return geometries;
 }
 
-/// Places a template at the vertex of an instance.
+/// Places a template at the vertex of an instance, which is its boundaries.
 void CityFeatureReader::Header::add_instance(const Json& geometry,
+                                             std::span<const BoundaryToken> boundaries,
                                              const std::vector<Position>& vertices,
                                              CityShapes& shapes, std::size_t& count) const {
-  const Json* shape = template_of(geometry);
-  const Json* anchors = find_member(geometry, "boundaries");
+  const Template* shape = template_of(geometry);
   const Json* matrix = find_member(geometry, "transformationMatrix");
-  if (shape == nullptr || anchors == nullptr || !anchors->is_array() || anchors->size() != 1 ||
-      !(*anchors)[0].is_number_unsigned() || matrix == nullptr || !matrix->is_array() ||
-      matrix->size() != kMatrixSize) {
+  if (count > kMostShownVertices || shape == nullptr || boundaries.size() != 3 ||
+      boundaries[1] >= vertices.size() || std::isnan(vertices[boundaries[1]][0]) ||
+      matrix == nullptr || !matrix->is_array() || matrix->size() != kMatrixSize) {
     return;
   }
-  const auto anchor = (*anchors)[0].get<std::uint64_t>();
-  if (anchor >= vertices.size() || std::isnan(vertices[anchor][0])) return;
   TemplatePlace place;
-  place.anchor = vertices[anchor];
+  place.anchor = vertices[boundaries[1]];
   for (std::size_t i = 0; i < kMatrixSize; ++i) {
     place.matrix[i] = number_of((*matrix)[i]).value_or(0);
   }
   shapes.decimals.reset();
-  ShapeBuilder(template_vertices, shapes, count, &place).add(*shape);
+  ShapeBuilder(template_vertices, shapes, count, &place).add(shape->geometry, shape->boundaries);
+}
+
+/// Adds the geometries of all objects at the level of detail that is shown.
+void CityFeatureReader::Header::add_shapes(const CityModel& model, const Json& objects,
+                                           std::optional<std::string_view> lod,
+                                           CityFeature& feature) const {
+  std::vector<Position> vertices = positions_of(model.vertices);
+  for (Position& vertex : vertices) vertex = world(vertex);
+  feature.shapes.decimals = decimals;
+  double highest = kNoLevel;
+  for (const Json& object : objects) {
+    for (const Levelled& found : geometries_of(object)) highest = std::max(highest, found.rank);
+  }
+  std::size_t count = 0;
+  ShapeBuilder builder(vertices, feature.shapes, count);
+  for (const Json& object : objects) {
+    const auto geometries = geometries_of(object);
+    double best = kNoLevel;
+    for (const Levelled& found : geometries) best = std::max(best, found.rank);
+    const bool is_footprint_only = best >= 0 && best < 1 && highest >= 1;
+    if (!lod && is_footprint_only) continue;
+    for (const auto& [geometry, level, rank] : geometries) {
+      if (lod ? level != *lod : rank != best) continue;
+      std::vector<BoundaryToken> own;
+      const auto boundaries = boundaries_of(model, *geometry, own);
+      if (string_member(*geometry, "type") == "GeometryInstance") {
+        add_instance(*geometry, boundaries, vertices, feature.shapes, count);
+      } else {
+        builder.add(*geometry, boundaries);
+      }
+    }
+  }
+  feature.is_too_large = count > kMostShownVertices;
+  if (feature.is_too_large) feature.shapes = {};
 }
 
 CityFeatureReader::CityFeatureReader(std::unique_ptr<Header> header) : header_(std::move(header)) {}
@@ -425,7 +538,13 @@ Result<CityFeatureReader> CityFeatureReader::make(std::string_view header, const
   }
   if (const Json* templates = find_member(*parsed, "geometry-templates")) {
     const Json* list = find_member(*templates, "templates");
-    if (list != nullptr && list->is_array()) made->templates = *list;
+    if (list != nullptr && list->is_array()) {
+      for (const Json& geometry : *list) {
+        auto& added = made->templates.emplace_back(Header::Template{geometry, {}});
+        const Json* boundaries = find_member(geometry, "boundaries");
+        if (boundaries != nullptr) append_tokens(*boundaries, added.boundaries);
+      }
+    }
     made->template_vertices = positions_of(find_member(*templates, "vertices-templates"));
   }
   return CityFeatureReader(std::move(made));
@@ -441,46 +560,25 @@ std::vector<std::pair<std::string, std::string>> city_attributes(std::string_vie
   return merged_attributes(*objects, id);
 }
 
-Result<CityFeature> CityFeatureReader::read(std::string_view feature, std::string_view id,
+Result<CityFeature> CityFeatureReader::read(std::string_view feature,
                                             std::optional<std::string_view> lod,
                                             const Limits& limits) const {
-  auto parsed = parse_json(feature, limits);
-  if (!parsed) return std::move(parsed).error();
-  const Json* objects = find_member(*parsed, "CityObjects");
-  if (objects == nullptr || !objects->is_object()) {
-    return Error{ErrorCode::malformed, "the feature has no CityObjects", {}, "/CityObjects"};
-  }
-  std::vector<Position> vertices = positions_of(find_member(*parsed, "vertices"));
-  for (Position& vertex : vertices) vertex = header_->world(vertex);
-
+  const auto model = parse_city_model(feature, CityText::document, limits);
+  if (!model) return model.error();
   CityFeature read;
-  read.attributes = merged_attributes(*objects, id);
-  read.shapes.decimals = header_->decimals;
-  double highest = kNoLevel;
-  for (const Json& object : *objects) {
-    for (const Levelled& found : header_->geometries_of(object)) {
-      highest = std::max(highest, found.rank);
-    }
+  auto id = feature_id(model->root);
+  if (!id) return std::move(id).error();
+  read.id = *std::move(id);
+  const Json* objects = find_member(model->root, "CityObjects");
+  if (objects == nullptr || !objects->is_object()) {
+    return malformed_at("CityObjects is missing or not an object", "/CityObjects");
   }
-  std::size_t count = 0;
-  ShapeBuilder builder(vertices, read.shapes, count);
-  for (const Json& object : *objects) {
-    const auto geometries = header_->geometries_of(object);
-    double best = kNoLevel;
-    for (const Levelled& found : geometries) best = std::max(best, found.rank);
-    const bool is_footprint_only = best >= 0 && best < 1 && highest >= 1;
-    if (!lod && is_footprint_only) continue;
-    for (const auto& [geometry, level, rank] : geometries) {
-      if (lod ? level != *lod : rank != best) continue;
-      if (string_member(*geometry, "type") == "GeometryInstance") {
-        header_->add_instance(*geometry, vertices, read.shapes, count);
-      } else {
-        builder.add(*geometry);
-      }
-    }
+  if (!model->vertices.is_present) {
+    return malformed_at("vertices is missing or not an array", "/vertices");
   }
-  read.is_too_large = count > kMostShownVertices;
-  if (read.is_too_large) read.shapes = {};
+  if (const Json* top = find_member(*objects, read.id)) read.type = string_member(*top, "type");
+  read.attributes = merged_attributes(*objects, read.id);
+  header_->add_shapes(*model, *objects, lod, read);
   return read;
 }
 

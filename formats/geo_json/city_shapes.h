@@ -49,6 +49,8 @@ inline constexpr std::size_t kMostShownVertices = 2'000'000;
 
 /// A feature with its properties.
 struct CityFeature {
+  std::string id;
+  std::string type;  // of the top-level object
   CityShapes shapes;
   bool is_too_large = false;  // more than kMostShownVertices: there are no shapes
   /// Names and values (JSON texts): the attributes of the top-level object, then those of other
@@ -74,12 +76,12 @@ class CityFeatureReader {
   CityFeatureReader& operator=(CityFeatureReader&&) noexcept;
   ~CityFeatureReader();
 
-  /// Reads a CityJSONFeature (write_feature()). Of each object the geometries of its highest level
+  /// Reads a CityJSONFeature. Of each object the geometries of its highest level
   /// of detail are read, those of level 0 (footprints) only if the feature has no other; or those
   /// of level `lod`, as written. Instances of geometry templates are placed. Rings that name
   /// vertices which do not exist, or fewer than three, are left out: what is stored without a proof
-  /// can have such. Errors: malformed, limit_exceeded. Cost: linear, the text as JSON values.
-  Result<CityFeature> read(std::string_view feature, std::string_view id,
+  /// can have such. Errors: malformed, limit_exceeded. Cost: linear in the text.
+  Result<CityFeature> read(std::string_view feature,
                            std::optional<std::string_view> lod = std::nullopt,
                            const Limits& limits = {}) const;
 

@@ -31,8 +31,7 @@ Error damaged(const Error& error) {
 
 }  // namespace
 
-Result<formats::CityFeature> ShownFeatureReader::read_city(const Document& document,
-                                                           const std::string& id) {
+Result<formats::CityFeature> ShownFeatureReader::read_city(const Document& document) {
   const std::string_view header = document.header;
   auto reader = readers_.find(header);
   if (reader == readers_.end()) {
@@ -43,7 +42,7 @@ Result<formats::CityFeature> ShownFeatureReader::read_city(const Document& docum
   }
   const auto text = formats::write_feature(document, document.features.front());
   if (!text) return text.error();
-  return reader->second.read(*text, id, lod_, limits_);
+  return reader->second.read(*text, lod_, limits_);
 }
 
 Result<ShownFeature> ShownFeatureReader::read(StoredFeature stored) {
@@ -63,7 +62,7 @@ Result<ShownFeature> ShownFeatureReader::read(StoredFeature stored) {
   }
   if (!is_city) document = formats::as_city_model(*document);
   if (!document) return damaged(document.error());
-  auto city = read_city(*document, shown.id);
+  auto city = read_city(*document);
   if (!city) return damaged(city.error());
   shown.city = *std::move(city);
   return shown;

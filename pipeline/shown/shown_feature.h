@@ -39,7 +39,7 @@ class ShownFeatureReader {
   Result<ShownFeature> read(StoredFeature stored);
 
  private:
-  Result<formats::CityFeature> read_city(const Document& document, const std::string& id);
+  Result<formats::CityFeature> read_city(const Document& document);
 
   std::optional<std::string> lod_;
   Limits limits_;

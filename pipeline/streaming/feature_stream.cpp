@@ -28,7 +28,7 @@ struct Passage {
 class FeatureStream {
  public:
   FeatureStream(formats::FeatureReader& reader, const FeatureStreamOptions& options,
-                const FeatureWork& work)
+                const TextWork& work)
       : reader_(reader), options_(options), work_(work) {}
 
   Result<std::uint64_t> run() {
@@ -50,19 +50,14 @@ class FeatureStream {
   void work_to_the_end() {
     try {
       for (auto found = take_next(); found; found = take_next()) {
-        Result<Feature> feature = read(found->text);
-        Delivery delivery = work_(found->number, found->text, std::move(feature));
-        put_back(found->number, {found->text.line.size(), std::move(delivery)});
+        const std::uint64_t bytes = found->text.line.size();
+        Delivery delivery = work_(found->number, std::move(found->text));
+        put_back(found->number, {bytes, std::move(delivery)});
       }
     } catch (...) {
       stop(Error{ErrorCode::unavailable, "a thread failed"});
       throw;
     }
-  }
-
-  Result<Feature> read(formats::FeatureText& text) const {
-    const StageTimer timer(options_.stages, Stage::reading);
-    return reader_.read(text);
   }
 
   std::optional<Found> take_next();
@@ -75,7 +70,7 @@ class FeatureStream {
 
   formats::FeatureReader& reader_;
   const FeatureStreamOptions& options_;
-  const FeatureWork& work_;
+  const TextWork& work_;
   std::uint64_t most_in_flight_ = 0;
 
   std::mutex mutex_;  // guards the members below, and reader_.next()
@@ -112,7 +107,7 @@ std::optional<FeatureStream::Found> FeatureStream::take_next() {
   is_over_ = true;
   if (!text) {  // the rest cannot be read; the error waits for its turn
     const std::uint64_t number = taken_++;
-    passages_[number].delivery = work_(number, {}, std::move(text).error());
+    passages_[number].delivery = work_(number, std::move(text).error());
     hand_on_in_order(lock);
   }
   room_.notify_all();
@@ -159,10 +154,23 @@ void FeatureStream::stop(Error error) {
 
 }  // namespace
 
+Result<std::uint64_t> stream_texts(formats::FeatureReader& reader,
+                                   const FeatureStreamOptions& options, const TextWork& work) {
+  return FeatureStream(reader, options, work).run();
+}
+
 Result<std::uint64_t> stream_features(formats::FeatureReader& reader,
                                       const FeatureStreamOptions& options,
                                       const FeatureWork& work) {
-  return FeatureStream(reader, options, work).run();
+  return stream_texts(reader, options,
+                      [&](std::uint64_t number, Result<formats::FeatureText> text) {
+                        if (!text) return work(number, {}, std::move(text).error());
+                        Result<Feature> feature = [&] {
+                          const StageTimer timer(options.stages, Stage::reading);
+                          return reader.read(*text);
+                        }();
+                        return work(number, *text, std::move(feature));
+                      });
 }
 
 }  // namespace watertight::pipeline

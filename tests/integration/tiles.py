@@ -151,6 +151,11 @@ def compare_command(folder, expected):
     check(run("diff", "-r", str(again), str(folder / "tiles")) == "", "one thread writes the same bytes")
     refused = subprocess.run([PROGRAM, "tiles", str(DOCUMENT), "-o", str(again)], capture_output=True, check=False)
     check(refused.returncode == 2 and b"is there already" in refused.stderr, "a folder that is there is not written to")
+    broken = folder / "broken.city.jsonl"
+    broken.write_text("".join(DOCUMENT.read_text().splitlines(keepends=True)[:2]) + '{"type":\n')
+    told = subprocess.run([PROGRAM, "tiles", str(broken), "-o", str(folder / "rest")], capture_output=True, text=True, check=False)
+    check(told.returncode == 1 and "1 feature of 2" in told.stdout and told.stderr.count("line 3: ") == 1,
+          "a broken line is named once, and the others become tiles")
 
 
 def as_files(out, tileset, files):

@@ -131,7 +131,7 @@ TEST_CASE("surfaces look like their semantics, without them like their object") 
       R"("vertices":[[0,0,0],[1,0,0],[0,1,0],[0,0,1]]})";
   const auto reader = formats::CityFeatureReader::make(header);
   REQUIRE(reader);
-  auto feature = reader->read(text, "a");
+  auto feature = reader->read(text);
   REQUIRE(feature);
   const auto mesh = tiles::mesh_of(*std::move(feature), "a", "WaterBody", 0, local_frame());
   REQUIRE(mesh);

@@ -32,7 +32,7 @@ const std::string kSquare =
 CityFeature read(const std::string& text, std::optional<std::string_view> lod = std::nullopt) {
   const auto reader = CityFeatureReader::make(kHeader);
   REQUIRE(reader);
-  auto feature = reader->read(text, "a", lod);
+  auto feature = reader->read(text, lod);
   REQUIRE(feature);
   return *std::move(feature);
 }
@@ -98,7 +98,7 @@ TEST_CASE("solids, lines, points and places of templates are shown") {
 TEST_CASE("rings that name no vertices are left out, with the holes of an exterior ring") {
   for (const char* boundaries :
        {"[[[0,1,99]]]", "[[[0,1]]]", "[[[]]]", "[[]]", "[]", "[[[0,1,-2]]]", "[[[0,1,\"2\"]]]",
-        "[[[0,1],[0,1,2]]]", "7", "[7]", "[[7]]", "{\"a\":1}", "[[[0,1,7]]]"}) {
+        "[[[0,1],[0,1,2]]]", "[7]", "[[7]]", "[[7,[0,1,2]]]", "[[[[0,1,2]]]]", "[[[0,1,7]]]"}) {
     INFO(boundaries);
     const CityFeature feature =
         read(feature_of(R"("a":{"type":"Building","geometry":[)" + surface("2", boundaries) + "]}",
@@ -150,7 +150,7 @@ TEST_CASE("small texts that place large templates are not shown beyond a limit")
   REQUIRE(reader);
   const std::string text =
       feature_of(R"("a":{"type":"Building","geometry":[)" + instances + "]}", kSquare);
-  const auto feature = reader->read(text, "a");
+  const auto feature = reader->read(text);
   REQUIRE(feature);
   CHECK(feature->is_too_large);
   CHECK(feature->shapes.polygons.empty());
@@ -172,13 +172,17 @@ TEST_CASE("properties are the attributes of the object and what its parts add wi
 TEST_CASE("a text that is no feature is an error") {
   const auto reader = CityFeatureReader::make(kHeader);
   REQUIRE(reader);
-  for (const char* text : {"", "{", "[]", "{}", R"({"CityObjects":[]})"}) {
+  for (const char* text : {"", "{", "[]", "{}", R"({"CityObjects":[]})",
+                           R"({"type":"CityJSONFeature","CityObjects":{},"vertices":[]})",
+                           R"({"type":"CityJSONFeature","id":"a","CityObjects":{}})",
+                           R"({"type":"CityJSONFeature","id":"a","vertices":[]})"}) {
     INFO(text);
-    CHECK_FALSE(reader->read(text, "a"));
+    CHECK_FALSE(reader->read(text));
   }
   CHECK_FALSE(CityFeatureReader::make("{"));
   CHECK_FALSE(CityFeatureReader::make(R"({"transform":{"scale":[1,2]}})"));
-  CHECK(reader->read(feature_of("", "[]"), "a"));
+  CHECK_FALSE(reader->read(feature_of(R"("a":{"geometry":[)" + surface("2", "7") + "]}", "[]")));
+  CHECK(reader->read(feature_of("", "[]")));
 }
 
 TEST_CASE("the ranges of other vertices have what no solid uses, in world coordinates") {

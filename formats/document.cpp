@@ -11,6 +11,7 @@
 #include "formats/ewkb.h"
 #include "formats/gml/city/city.h"
 #include "formats/gml/gml.h"
+#include "formats/gml/written/city_gml.h"
 #include "formats/json_fg.h"
 #include "formats/mesh/mesh_text.h"
 #include "formats/text/kept_text.h"
@@ -294,10 +295,9 @@ Result<std::string> write_feature(const Document& document, const Feature& featu
 }
 
 Result<Bytes> write_document(const Document& document, Format format) {
-  if (!is_city(format)) {
-    const bool is_kept = format == document.format && !document.framing.empty();
-    return is_kept ? write_kept(document) : write_solids(document.features, format);
-  }
+  const bool is_kept = format == document.format && !document.framing.empty();
+  if (!is_city(format) && is_kept) return write_kept(document);
+  if (!is_city(format) && format != Format::gml) return write_solids(document.features, format);
   if (!is_city(document.format)) {
     if (auto status = all_readable(document.features); !status) return std::move(status).error();
     auto model = as_city_model(document);
@@ -309,8 +309,9 @@ Result<Bytes> write_document(const Document& document, Format format) {
         ErrorCode::unsupported,
         "a city model needs one decimal grid for all coordinates: " + written.error().message};
   }
-  auto text =
-      format == Format::city_json ? write_city_json(document) : write_city_json_seq(document);
+  auto text = format == Format::gml         ? write_city_gml(document)
+              : format == Format::city_json ? write_city_json(document)
+                                            : write_city_json_seq(document);
   if (!text) return std::move(text).error();
   return bytes_of(*text);
 }

@@ -30,7 +30,7 @@ enum class Format : std::uint8_t {
   off,
   wkt,
   ewkb,
-  gml,      // GML 3.2 solids, CityGML 1 to 3; read only
+  gml,      // GML 3.2 solids, CityGML 1 to 3; written as CityGML 2.0
   json_fg,  // read only
   stl,      // text and binary; read only, welded by equal coordinates
   ply,      // text and binary; read only
@@ -245,12 +245,11 @@ Result<Document> read_document(ByteView bytes, Format format, const ReadOptions&
 Result<std::string> write_feature(const Document& document, const Feature& feature);
 
 /// The bytes of a whole document. City models become a CityJSON of all features (city_json), or a
-/// header line and feature lines (city_json_seq); a document that kept its text returns it in its
-/// own format. For obj, off, wkt and ewkb: the solids of all features. Other formats can only be
-/// written as the text that was kept.
-/// Errors: malformed if the solids are not those of the text; unsupported when a format cannot hold
-/// the document (OFF: several solids; OBJ, OFF: rings with holes, which only `convert`
-/// triangulates).
+/// header line and feature lines (city_json_seq), or a CityGML 2.0 (gml; write_city_gml()); a
+/// document that kept its text returns it in its own format. For obj, off, wkt and ewkb: the solids
+/// of all features. Other formats can only be written as the text that was kept. Errors: malformed
+/// if the solids are not those of the text; unsupported when a format cannot hold the document
+/// (OFF: several solids; OBJ, OFF: rings with holes, which only `convert` triangulates).
 Result<Bytes> write_document(const Document& document, Format format);
 
 }  // namespace watertight::formats

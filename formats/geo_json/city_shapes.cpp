@@ -8,6 +8,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "formats/city_json/boundary_cursor.h"
 #include "formats/city_json/city_json.h"
 #include "formats/city_json/model.h"
 #include "formats/text/json.h"
@@ -175,12 +176,12 @@ class ShapeBuilder {
   /// Adds a geometry with its boundaries.
   void add(const Json& geometry, std::span<const BoundaryToken> boundaries) {
     if (boundaries.empty()) return;
-    rest_ = boundaries;
+    cursor_ = BoundaryCursor(boundaries);
     const std::string type = string_member(geometry, "type");
     semantics_ = Semantics::of(geometry);
     const Json* values = semantics_.values;
     if (type == "MultiLineString") {
-      for_each_element([&](std::size_t) {
+      cursor_.for_each_element([&](std::size_t) {
         auto positions = take_ring(2);
         if (!positions.empty()) shapes_.lines.push_back(std::move(positions));
       });
@@ -191,28 +192,14 @@ class ShapeBuilder {
     } else if (type == "Solid") {
       add_solid(values);
     } else if (type == "MultiSolid" || type == "CompositeSolid") {
-      for_each_element([&](std::size_t i) { add_solid(Semantics::part(values, i)); });
+      cursor_.for_each_element([&](std::size_t i) { add_solid(Semantics::part(values, i)); });
     }
   }
 
  private:
-  BoundaryToken take() {
-    const BoundaryToken token = rest_.front();
-    rest_ = rest_.subspan(1);
-    return token;
-  }
-
-  /// Takes a value; if it is an array, calls `take_element` with the number of each element.
-  template <class TakeElement>
-  void for_each_element(TakeElement take_element) {
-    if (take() != kOpen) return;
-    for (std::size_t i = 0; rest_.front() != kClose; ++i) take_element(i);
-    take();
-  }
-
   void add_solid(const Json* values) {
     std::vector<CityShapes::Shell> solid;
-    for_each_element([&](std::size_t i) {
+    cursor_.for_each_element([&](std::size_t i) {
       const std::size_t first = shapes_.polygons.size();
       add_surfaces(Semantics::part(values, i));
       solid.push_back({first, shapes_.polygons.size() - first});
@@ -221,16 +208,16 @@ class ShapeBuilder {
   }
 
   void add_surfaces(const Json* values) {
-    for_each_element(
+    cursor_.for_each_element(
         [&](std::size_t i) { add_surface(semantics_.kind(Semantics::part(values, i))); });
   }
 
   /// Without the exterior ring there is no polygon: a hole would be one.
   void add_surface(FacetKind kind) {
     CityShapes::Polygon polygon;
-    for_each_element([&](std::size_t i) {
+    cursor_.for_each_element([&](std::size_t i) {
       if (i > 0 && polygon.empty()) {
-        take_elements();
+        cursor_.take_elements();
         return;
       }
       auto positions = take_ring(3);
@@ -241,23 +228,10 @@ class ShapeBuilder {
     shapes_.kinds.push_back(kind);
   }
 
-  /// The elements of an array, with the tokens of arrays within it; none of another value.
-  std::span<const BoundaryToken> take_elements() {
-    const auto all = rest_;
-    std::size_t depth = 0;
-    do {
-      const BoundaryToken token = take();
-      if (token == kOpen) ++depth;
-      if (token == kClose) --depth;
-    } while (depth > 0);
-    const std::size_t size = all.size() - rest_.size();
-    return size < 2 ? all.first(0) : all.subspan(1, size - 2);
-  }
-
   /// The positions of a list of vertices; none if there are fewer than `least`, or one of them does
   /// not exist.
   CityShapes::Ring take_ring(std::size_t least) {
-    const auto list = take_elements();
+    const auto list = cursor_.take_elements();
     const auto exists = [&](BoundaryToken vertex) {
       return vertex < vertices_.size() && !std::isnan(vertices_[vertex][0]);
     };
@@ -282,8 +256,8 @@ class ShapeBuilder {
   CityShapes& shapes_;
   std::size_t& count_;
   const TemplatePlace* place_;
-  std::span<const BoundaryToken> rest_;  // of the boundaries of the geometry in work
-  Semantics semantics_;                  // of the geometry in work
+  BoundaryCursor cursor_;  // in the boundaries of the geometry in work
+  Semantics semantics_;    // of the geometry in work
   std::unordered_map<BoundaryToken, std::size_t> used_;
 };
 

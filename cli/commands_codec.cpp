@@ -521,7 +521,7 @@ bool makes_city_of_gml(const ConvertCommand& command, const files::WholeInput& i
   const auto from = formats::detect_format(input.name, input.bytes);
   const auto to = files::format_of_name(command.output);
   return from && *from == Format::gml && to &&
-         (*to == Format::city_json || *to == Format::city_json_seq);
+         (*to == Format::city_json || *to == Format::city_json_seq || *to == Format::gml);
 }
 
 void tell_notes(const std::string& file, const Document& document) {

@@ -30,7 +30,7 @@ Result<Document> with_surfaces_as_solids(const Document& city, formats::ReadOpti
 Result<Document> read_to_convert(ByteView bytes, Format from, Format to,
                                  formats::ReadOptions options) {
   options.split_features = false;
-  const bool is_city = to == Format::city_json || to == Format::city_json_seq;
+  const bool is_city = to == Format::city_json || to == Format::city_json_seq || to == Format::gml;
   if (from != Format::gml || !is_city) return formats::read_document(bytes, from, options);
   auto city = formats::city_model_of_gml(bytes, options.limits);
   if (!city) return std::move(city).error();

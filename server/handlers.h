@@ -24,6 +24,7 @@ inline constexpr std::string_view kJsonFg = "application/vnd.ogc.fg+json";
 inline constexpr std::string_view kMergePatch = "application/merge-patch+json";
 inline constexpr std::string_view kCityJson = "application/city+json";
 inline constexpr std::string_view kCityJsonSeq = "application/city+json-seq";
+inline constexpr std::string_view kGml = "application/gml+xml";
 inline constexpr std::string_view kObj = "model/obj";
 inline constexpr std::string_view kGltf = "model/gltf-binary";
 inline constexpr std::string_view kBlob = "application/vnd.watertight.blob";

@@ -21,29 +21,17 @@ struct WrittenFormat {
   Format format;
 };
 
-constexpr std::array<WrittenFormat, 6> kWritten{
+constexpr std::array<WrittenFormat, 7> kWritten{
     {{"cityjson", kCityJson, Format::city_json},
      {"cityjsonseq", kCityJsonSeq, Format::city_json_seq},
      {"obj", kObj, Format::obj},
      {"off", "model/vnd.off", Format::off},
      {"wkt", "text/wkt", Format::wkt},
-     {"ewkb", "application/ewkb", Format::ewkb}}};
+     {"ewkb", "application/ewkb", Format::ewkb},
+     {"gml", kGml, Format::gml}}};
 
 /// The most bytes of notes in the header of an answer.
 constexpr std::size_t kMostNoteBytes = 4000;
-
-// The format in which only documents of the same format are written, by POST /repair.
-constexpr WrittenFormat kWrittenGml{"gml", "application/gml+xml", Format::gml};
-
-/// Whether a client wants a repaired GML document as GML.
-bool is_gml_wanted(const RoutedRequest& request) {
-  if (const std::string* named = request.target.parameter("to")) return *named == "gml";
-  std::vector<std::string_view> offers;
-  for (const WrittenFormat& format : kWritten) offers.push_back(format.type);
-  offers.push_back(kWrittenGml.type);
-  const auto chosen = negotiate(request.request.header("accept"), offers);
-  return chosen && *chosen == kWritten.size();
-}
 
 /// The format that a client wants; nothing if there is none such.
 std::optional<WrittenFormat> wanted_format(const RoutedRequest& request) {
@@ -63,7 +51,8 @@ Response refuse_written_formats() {
   return refuse(406, "not-acceptable",
                 "the document is available as application/city+json (to=cityjson), "
                 "application/city+json-seq (to=cityjsonseq), model/obj (to=obj), model/vnd.off "
-                "(to=off), text/wkt (to=wkt) and application/ewkb (to=ewkb)");
+                "(to=off), text/wkt (to=wkt), application/ewkb (to=ewkb) and application/gml+xml "
+                "(to=gml)");
 }
 
 /// The document as the client wants it, with the notes of its reader.
@@ -156,8 +145,7 @@ Response post_tessellate(const RoutedRequest& request) {
 
 Response post_repair(const RoutedRequest& request) {
   auto report = wanted_report(request);
-  auto wanted = report ? std::optional(kWritten[0]) : wanted_format(request);
-  if (is_gml_wanted(request)) wanted = kWrittenGml;
+  const auto wanted = report ? std::optional(kWritten[0]) : wanted_format(request);
   if (!wanted) return refuse_written_formats();
   pipeline::IngestOptions rules = ingest_options(request.service, request.is_cancelled);
   Status read = read_rules(request.target, rules);
@@ -172,9 +160,6 @@ Response post_repair(const RoutedRequest& request) {
   if (body.problem) return to_response(*body.problem);
   // A report without a wish for a format is about the document as it comes.
   const Format to = report && body.format == Format::gml ? Format::gml : wanted->format;
-  if (to == Format::gml && body.format != Format::gml) {
-    return refuse(406, "not-acceptable", "only GML is written as GML");
-  }
   formats::ReadOptions reading;
   reading.limits = request.service.options.limits;
   reading.curved = pipeline::curved_reading();
@@ -237,6 +222,7 @@ Response post_decode(const RoutedRequest& request) {
   }
   const auto wanted = wanted_format(request);
   if (!wanted) return refuse_written_formats();
+  if (wanted->format == document->format) return converted(*document, *wanted);
   const auto text = pipeline::convert_document(*document, document->format);
   if (!text) return to_response(problem_of_body(text.error()));
   const auto again = pipeline::read_to_convert(*text, document->format, wanted->format,

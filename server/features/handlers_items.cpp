@@ -76,6 +76,7 @@ Json summary_json(const std::string& base, const std::string& collection,
                         {"version", feature.version}};
   const std::string path = base + item_path(collection, feature.id);
   json["links"] = Json::array({link(path + "?f=cityjson", "item", kCityJson, "CityJSON"),
+                               link(path + "?f=gml", "alternate", kGml, "CityGML"),
                                link(path + "?f=obj", "alternate", kObj, "OBJ"),
                                link(path + "?f=glb", "alternate", kGltf, "glTF"),
                                link(path + "?f=wt", "alternate", kContainer, "Watertight file")});

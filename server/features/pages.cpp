@@ -296,6 +296,7 @@ std::string item_page(const std::string& collection, const Json& feature) {
       {"?f=cityjsonseq", "CityJSONSeq"},
       {"?f=geojson", "GeoJSON"},
       {"?f=jsonfg", "JSON-FG"},
+      {"?f=gml", "CityGML"},
       {"?f=obj", "OBJ"},
       {"?f=wkt", "WKT"},
       {"?f=glb", "binary glTF"},

@@ -26,12 +26,13 @@ struct ItemFormat {
   std::string_view type;
 };
 
-constexpr std::array<ItemFormat, 14> kFormats{{{"cityjson", kCityJson},
+constexpr std::array<ItemFormat, 15> kFormats{{{"cityjson", kCityJson},
                                                {"jsonfg", kJsonFg},
                                                {"html", kHtml},
                                                {"geojson", kGeoJson},
                                                {"json", kJson},
                                                {"cityjsonseq", kCityJsonSeq},
+                                               {"gml", kGml},
                                                {"obj", kObj},
                                                {"wkt", "text/wkt"},
                                                {"ewkb", "application/ewkb"},
@@ -161,6 +162,7 @@ Result<Bytes> represent(StoredFeature feature, const ItemRequest& item,
                  "the stored feature cannot be decoded: " + to_string(document.error())};
   }
   Format target = Format::city_json;
+  if (format == "gml") target = Format::gml;
   if (format == "obj") target = Format::obj;
   if (format == "wkt") target = Format::wkt;
   if (format == "ewkb") target = Format::ewkb;
@@ -285,7 +287,8 @@ Response get_item(const RoutedRequest& request) {
         "an item is available as application/city+json (f=cityjson), application/json (f=json), "
         "application/geo+json (f=geojson), application/vnd.ogc.fg+json (f=jsonfg), text/html "
         "(f=html), "
-        "application/city+json-seq (f=cityjsonseq), model/obj (f=obj), text/wkt (f=wkt), "
+        "application/city+json-seq (f=cityjsonseq), application/gml+xml (f=gml), model/obj "
+        "(f=obj), text/wkt (f=wkt), "
         "application/ewkb (f=ewkb), model/gltf-binary (f=glb), "
         "application/vnd.watertight (f=wt) or application/vnd.watertight.blob (f=blob), its proofs "
         "and findings with f=proof, the tetrahedra in its solids with f=structure");

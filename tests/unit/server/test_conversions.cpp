@@ -39,6 +39,9 @@ TEST_CASE_METHOD(ConversionRoutes,
     REQUIRE(decoded.status == 200);
     CHECK(decoded.content_type == type);
     CHECK(decoded.body == text);
+    const std::string to = type == kGml ? "gml" : text == city ? "cityjsonseq" : "cityjson";
+    CHECK(send_body("/decode?to=" + to, encoded.body).body == text);
+    if (to == "cityjson") continue;
     CHECK(send_body("/decode?to=cityjson", encoded.body).body ==
           send_body("/convert?to=cityjson", text, {{"content-type", type}}).body);
   }
@@ -56,6 +59,13 @@ TEST_CASE_METHOD(ConversionRoutes,
   const Json feature = Json::parse(test::whole(list))["features"][0];
   CHECK(feature["id"] == id);
   CHECK(feature["geometry"]["type"] == "MultiPolygon");
+  const auto item = get("/collections/town/items/" + id + "?f=gml");
+  const std::string gml = test::whole(item);
+  CHECK(item.content_type == kGml);
+  const auto again = send_body("/convert", gml, {{"content-type", kGml}});
+  REQUIRE(again.status == 200);
+  const auto first = get("/collections/town/items/" + id + "?f=cityjson");
+  CHECK(Json::parse(again.body)["CityObjects"] == Json::parse(test::whole(first))["CityObjects"]);
 }
 
 TEST_CASE_METHOD(ConversionRoutes, "invalid solids come back repaired, and what was done") {
@@ -109,7 +119,7 @@ TEST_CASE_METHOD(ConversionRoutes, "holes are closed by smooth patches on reques
   }
 }
 
-TEST_CASE_METHOD(ConversionRoutes, "GML is repaired as GML on request, other formats are not") {
+TEST_CASE_METHOD(ConversionRoutes, "GML is repaired as GML on request, with its elements and ids") {
   std::string text = test::read_text(test::source_path("tests/data/gml/citygml_2_xlinks.gml"));
   const std::string south = "0,0,0 10,0,0 5,5,10 0,0,0";
   text.replace(text.find(south), south.size(), "0,0,0 5,5,10 10,0,0 0,0,0");
@@ -125,7 +135,9 @@ TEST_CASE_METHOD(ConversionRoutes, "GML is repaired as GML on request, other for
   CHECK(report["input_file_type"] == "GML");
   CHECK(report["verdict"] == "valid");
   const std::string city = test::read_text(test::source_path("examples/invalid.city.jsonl"));
-  CHECK(send_body("/repair?to=gml", city).status == 406);
+  const auto city_mended = send_body("/repair?to=gml", city);
+  CHECK(city_mended.status == 200);
+  CHECK(city_mended.body.find("<bldg:Building") != std::string::npos);
   CHECK(post("/collections/houses/items", text, kGml).status == 422);
   const auto stored = post("/collections/houses/items?repair=orientation", text, kGml);
   INFO(stored.body);
@@ -221,14 +233,14 @@ TEST_CASE_METHOD(ConversionRoutes,
 
 TEST_CASE_METHOD(ConversionRoutes, "a document is converted to each format that is written") {
   const std::string text = golden("201.city.json");
-  for (const char* to : {"cityjson", "cityjsonseq", "obj", "off", "wkt", "ewkb"}) {
+  for (const char* to : {"cityjson", "cityjsonseq", "obj", "off", "wkt", "ewkb", "gml"}) {
     INFO(to);
     const auto converted = send_body(std::string("/convert?to=") + to, text);
     CHECK((converted.status == 200 || converted.status == 422));  // OFF has no several solids
     CHECK(!converted.body.empty());
   }
   CHECK(send_body("/convert?to=wkt", text).body.starts_with("POLYHEDRALSURFACE Z"));
-  CHECK(send_body("/convert?to=gml", text).status == 406);
+  CHECK(send_body("/convert?to=stl", text).status == 406);
   CHECK(send_body("/convert", text, {{"accept", "image/png"}}).status == 406);
   CHECK(send_body("/convert", "{\"type\":").status == 400);
   CHECK(send_body("/convert?surfaces=perhaps", text).status == 400);

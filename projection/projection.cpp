@@ -3,12 +3,16 @@
 
 #include <proj.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace watertight::projection {
 namespace {
@@ -144,6 +148,32 @@ Result<Rectangle> bounds(std::uint32_t srid, System system, PJ_DIRECTION directi
   return result;
 }
 
+/// The places in the plane of positions, each once: those of a building stand above each other, and
+/// most of the time is PROJ's.
+struct Places {
+  std::vector<std::array<double, 2>> distinct;
+  std::vector<std::size_t> number_of;  // for each position
+
+  explicit Places(std::span<const Position> positions) : number_of(positions.size()) {
+    using Bits = std::array<std::uint64_t, 2>;  // they have an order, also where one is no number
+    std::vector<std::pair<Bits, std::size_t>> order;
+    order.reserve(positions.size());
+    for (const auto& [x, y, z] : positions) {
+      order.emplace_back(Bits{std::bit_cast<std::uint64_t>(x), std::bit_cast<std::uint64_t>(y)},
+                         order.size());
+    }
+    std::sort(order.begin(), order.end());
+    const Bits* last = nullptr;
+    for (const auto& [bits, position] : order) {
+      if (last == nullptr || *last != bits) {
+        distinct.push_back({positions[position][0], positions[position][1]});
+      }
+      number_of[position] = distinct.size() - 1;
+      last = &bits;
+    }
+  }
+};
+
 }  // namespace
 
 Status transform(std::uint32_t srid, System system, std::span<Position> positions) {
@@ -154,12 +184,18 @@ Status transform_between(std::uint32_t from, std::uint32_t to, std::span<Positio
   if (positions.empty()) return Done{};
   PJ* change = library().find(from, to);
   if (change == nullptr) return no_transformation(from, to);
-  Position& first = positions.front();
-  proj_trans_generic(change, PJ_FWD, &first[0], sizeof(Position), positions.size(), &first[1],
-                     sizeof(Position), positions.size(), nullptr, 0, 0, nullptr, 0, 0);
+  Places places(positions);
+  auto& first = places.distinct.front();
+  const std::size_t count = places.distinct.size();
+  proj_trans_generic(change, PJ_FWD, &first[0], sizeof(first), count, &first[1], sizeof(first),
+                     count, nullptr, 0, 0, nullptr, 0, 0);
   proj_errno_reset(change);
-  for (const Position& position : positions) {
-    if (!std::isfinite(position[0]) || !std::isfinite(position[1])) return outside(from, to);
+  for (const auto& [x, y] : places.distinct) {
+    if (!std::isfinite(x) || !std::isfinite(y)) return outside(from, to);
+  }
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto& [x, y] = places.distinct[places.number_of[i]];
+    positions[i] = {x, y, positions[i][2]};
   }
   return Done{};
 }

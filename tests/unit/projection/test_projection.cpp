@@ -39,6 +39,21 @@ TEST_CASE("well-known points have their published longitude and latitude") {
   }
 }
 
+TEST_CASE("positions above each other, in any order, have one place") {
+  const std::vector<Position> stored{{155000, 463000, 1},
+                                     {85000, 447000, 2},
+                                     {155000, 463000, -3},
+                                     {85000, 447000.5, 4},
+                                     {85000, 447000, 2}};
+  std::vector<Position> together = stored;
+  REQUIRE(projection::transform(28992, System::longitude_latitude, together));
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    std::vector<Position> alone{stored[i]};
+    REQUIRE(projection::transform(28992, System::longitude_latitude, alone));
+    CHECK(together[i] == alone[0]);
+  }
+}
+
 TEST_CASE("earth-centred coordinates are those of the ellipsoid's axes") {
   std::vector<Position> positions{{0, 0, 0}, {90, 0, 100}, {0, 90, 0}, {180, -90, 10}};
   projection::to_earth_centred(positions);

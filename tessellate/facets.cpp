@@ -23,6 +23,7 @@
 #include <CGAL/property_map.h>
 
 #include "geometry/predicates/predicates.h"
+#include "tessellate/few_vertices.h"
 #include "tessellate/flatness.h"
 
 namespace watertight::tessellate {
@@ -68,6 +69,7 @@ class FacetTriangulator {
   FacetState triangulate_three(std::span<const Index> ring, std::vector<Triangle>& triangles);
   bool is_even_diagonal(std::span<const Index> ring, const std::array<PlanePoint, 4>& p) const;
   bool triangulate_convex_four(std::span<const Index> ring, std::vector<Triangle>& triangles);
+  bool triangulate_few(std::span<const Index> ring, std::vector<Triangle>& triangles);
   FacetState triangulate_any(IndexRange rings, std::vector<Triangle>& triangles);
   bool collect_vertices(IndexRange rings);
   bool insert_vertices(PlaneTriangulation& plane);
@@ -91,6 +93,8 @@ class FacetTriangulator {
   std::vector<Index> used_;            // the facet's vertices, ascending, once each
   std::vector<VertexHandle> handles_;  // the handles of the vertices in used_
   std::vector<Index> scratch_;
+  std::vector<FewVertices::PlanePoint> ring_points_;
+  FewVertices few_;
 };
 
 /// Appends a triangle, its smallest point first.
@@ -152,6 +156,23 @@ bool FacetTriangulator::triangulate_convex_four(std::span<const Index> ring,
     append(ring[1], ring[2], ring[3], triangles);
   }
   return true;
+}
+
+/// Appends the triangles of a simple ring of few vertices. False, and no triangles, for others.
+bool FacetTriangulator::triangulate_few(std::span<const Index> ring,
+                                        std::vector<Triangle>& triangles) {
+  if (ring.size() > FewVertices::kMost) return false;
+  ring_points_.clear();
+  for (const Index vertex : ring) {
+    const PlanePoint point = project(vertex);
+    ring_points_.push_back({point.x(), point.y()});
+  }
+  const auto found = few_.triangulate(ring_points_);
+  for (auto [a, b, c] : found) {
+    if (projection_.is_mirrored) std::swap(b, c);
+    append(ring[a], ring[b], ring[c], triangles);
+  }
+  return !found.empty();
 }
 
 /// Collects the vertices of the facet. False if a ring is too short or passes a vertex twice.
@@ -307,6 +328,7 @@ FacetState FacetTriangulator::triangulate(Index facet, std::vector<Triangle>& tr
   if (rings.size() == 1 && exterior.size() == 4 && triangulate_convex_four(exterior, triangles)) {
     return FacetState::triangulated;
   }
+  if (rings.size() == 1 && triangulate_few(exterior, triangles)) return FacetState::triangulated;
   return triangulate_any(rings, triangles);
 }
 

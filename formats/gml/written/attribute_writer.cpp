@@ -61,6 +61,12 @@ std::string_view generic_element(const Json& value, std::string_view type) {
 
 }  // namespace
 
+/// The value of an attribute; null if there is none.
+const Json* AttributeWriter::attribute(std::string_view key) const {
+  const auto found = attributes_.find(key);
+  return found == attributes_.end() ? nullptr : found->second;
+}
+
 /// Whether the schemas have a property of this name here.
 bool AttributeWriter::is_property(std::string_view key) const {
   return std::ranges::any_of(std::array{kOfGml, kOfCityObjects, kOfPlace, kOfModules, properties_},
@@ -79,7 +85,7 @@ bool AttributeWriter::is_beside(std::string_view key) const {
   for (const std::string_view end : {"_codeSpace", "_uom", "_type"}) {
     if (!key.ends_with(end)) continue;
     const std::string_view of = key.substr(0, key.size() - end.size());
-    const Json* value = find_member(*attributes_, of);
+    const Json* value = attribute(of);
     if (value == nullptr) continue;
     const bool is_generic = !can_be_property(of, *value);
     if (end == "_type" ? is_generic && value->is_string()
@@ -93,14 +99,14 @@ bool AttributeWriter::is_beside(std::string_view key) const {
 /// The text of the attribute beside an attribute; of a list, that of its element `number`.
 std::string AttributeWriter::beside(std::string_view key, std::string_view end,
                                     std::size_t number) const {
-  const Json* value = find_member(*attributes_, std::string(key).append(end));
+  const Json* value = attribute(std::string(key).append(end));
   if (value == nullptr) return {};
   if (value->is_array()) value = number < value->size() ? &(*value)[number] : nullptr;
   return value != nullptr && value->is_string() ? value->get<std::string>() : std::string();
 }
 
 void AttributeWriter::property(std::string_view prefix, std::string_view key) {
-  const Json* value = find_member(*attributes_, key);
+  const Json* value = attribute(key);
   if (value == nullptr || !can_be_property(key, *value)) return;
   const std::string name = std::string(prefix).append(":").append(key);
   const auto write_one = [&](const std::string& text, std::size_t number) {
@@ -122,7 +128,7 @@ void AttributeWriter::property(std::string_view prefix, std::string_view key) {
 }
 
 void AttributeWriter::external_references() {
-  const Json* value = find_member(*attributes_, "externalReference");
+  const Json* value = attribute("externalReference");
   if (value == nullptr) return;
   const auto write_one = [&](const Json& reference) {
     xml_.open("core:externalReference");
@@ -165,7 +171,10 @@ void AttributeWriter::generic(std::string_view key, const Json& value, std::stri
 void AttributeWriter::write(const Json& attributes, std::string_view prefix,
                             std::string_view properties) {
   if (!attributes.is_object()) return;
-  attributes_ = &attributes;
+  attributes_.clear();
+  for (const auto& [key, value] : attributes.get_ref<const Json::object_t&>()) {
+    attributes_.emplace(key, &value);
+  }
   properties_ = properties;
   const auto write_all = [&](std::string_view space, std::string_view list) {
     while (!list.empty()) property(space, take_word(list));

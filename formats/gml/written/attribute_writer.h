@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 #include "formats/gml/written/xml_text.h"
 #include "formats/text/json.h"
@@ -28,6 +29,7 @@ class AttributeWriter {
   void write(const Json& attributes, std::string_view prefix, std::string_view properties);
 
  private:
+  const Json* attribute(std::string_view key) const;
   bool is_property(std::string_view key) const;
   bool is_beside(std::string_view key) const;
   bool can_be_property(std::string_view key, const Json& value) const;
@@ -39,7 +41,7 @@ class AttributeWriter {
 
   XmlText& xml_;
   GmlLeftOut& left_out_;
-  const Json* attributes_ = nullptr;  // in work
+  std::unordered_map<std::string_view, const Json*> attributes_;  // in work
   std::string_view properties_;
 };
 

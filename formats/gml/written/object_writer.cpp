@@ -70,7 +70,17 @@ ObjectWriter::ObjectWriter(const CityModel& model, const VertexTexts& vertices,
       ids_(ids),
       xml_(xml),
       left_out_(left_out),
-      objects_(*find_member(model.root, "CityObjects")) {}
+      objects_(*find_member(model.root, "CityObjects")) {
+  for (const auto& [id, object] : objects_.get_ref<const Json::object_t&>()) {
+    object_of_.emplace(id, &object);
+  }
+}
+
+/// The object with this id; null if the model has none.
+const Json* ObjectWriter::object_of(std::string_view id) const {
+  const auto found = object_of_.find(id);
+  return found == object_of_.end() ? nullptr : found->second;
+}
 
 /// A gml:id for an id; "" if the document has it already.
 std::string ObjectWriter::new_id(std::string_view id) {
@@ -96,7 +106,7 @@ void ObjectWriter::write_members() {
 }
 
 void ObjectWriter::write_member(const std::string& id) {
-  const GmlObjectKind& kind = gml_object_kind(string_member(*find_member(objects_, id), "type"));
+  const GmlObjectKind& kind = gml_object_kind(string_member(*object_of(id), "type"));
   xml_.open("core:cityObjectMember");
   write_object(id, kind.element, 1);
   xml_.close();
@@ -104,7 +114,7 @@ void ObjectWriter::write_member(const std::string& id) {
 
 void ObjectWriter::write_object(const std::string& id, std::string_view element,
                                 std::size_t depth) {
-  const Json& object = *find_member(objects_, id);
+  const Json& object = *object_of(id);
   const std::string type = string_member(object, "type");
   OpenObject open;
   open.id = id;
@@ -144,7 +154,7 @@ void ObjectWriter::write_object(const std::string& id, std::string_view element,
 
 /// Whether the elements of an object's children stand in its own, which those of a group do not.
 bool ObjectWriter::contains_objects(const std::string& id) const {
-  const Json* object = find_member(objects_, id);
+  const Json* object = object_of(id);
   return object != nullptr && string_member(*object, "type") != "CityObjectGroup";
 }
 
@@ -177,7 +187,7 @@ void ObjectWriter::write_children(const Json& object, std::string_view type, boo
 
 void ObjectWriter::write_child(const std::string& id, const GmlChildKind& place,
                                std::size_t depth) {
-  const Json* found = find_member(objects_, id);
+  const Json* found = object_of(id);
   if (found == nullptr || written_.contains(id)) return;
   if (string_member(*found, "type") != place.child) return;
   const GmlObjectKind& kind = gml_object_kind(place.child);

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -45,6 +46,7 @@ class ObjectWriter {
     bool has_level = false;    // an attribute says the level of detail
   };
 
+  const Json* object_of(std::string_view id) const;
   void write_member(const std::string& id);
   void write_object(const std::string& id, std::string_view element, std::size_t depth);
   bool contains_objects(const std::string& id) const;
@@ -85,6 +87,7 @@ class ObjectWriter {
   XmlText& xml_;
   GmlLeftOut& left_out_;
   const Json& objects_;
+  std::unordered_map<std::string_view, const Json*> object_of_;  // by id
   std::set<std::string, std::less<>> written_;
 };
 

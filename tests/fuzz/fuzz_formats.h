@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 
 #include "formats/document.h"
 
@@ -35,6 +36,18 @@ inline void require_same_solids(const Document& a, const Document& b) {
   }
 }
 
+/// Writes a document as CityGML, which must be one that the reader reads or refuses for its
+/// geometry.
+inline void check_city_gml(const Document& document) {
+  const auto written = formats::write_document(document, Format::gml);
+  if (!written) {
+    require(!written.error().message.empty());
+    return;
+  }
+  const auto again = formats::read_document(*written, Format::gml);
+  require(again.has_value() || again.error().message.find("not well-formed") == std::string::npos);
+}
+
 /// Reads a document, writes it in the same format, and reads the result. The writer may refuse a
 /// document only as unsupported.
 inline void check_reader(ByteView bytes, Format format, bool is_split) {
@@ -56,6 +69,7 @@ inline void check_reader(ByteView bytes, Format format, bool is_split) {
   const auto again = formats::read_document(*written, format, options);
   require(again.has_value());
   require_same_solids(*document, *again);
+  if (format == Format::city_json || format == Format::city_json_seq) check_city_gml(*document);
 }
 
 /// A document that keeps its bytes gives them back. CityJSON is left to check_reader().

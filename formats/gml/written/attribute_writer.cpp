@@ -5,7 +5,7 @@
 #include <array>
 
 #include "formats/gml/city/names.h"
-#include "formats/gml/written/elements_of.h"
+#include "formats/gml/written/kinds.h"
 #include "formats/gml/xml.h"
 
 namespace watertight::formats {

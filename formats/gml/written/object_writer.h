@@ -13,7 +13,7 @@
 
 #include "formats/city_json/sax.h"
 #include "formats/gml/written/attribute_writer.h"
-#include "formats/gml/written/elements_of.h"
+#include "formats/gml/written/kinds.h"
 #include "formats/gml/written/object_geometry.h"
 #include "formats/gml/written/xml_text.h"
 

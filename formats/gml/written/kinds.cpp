@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formats/gml/written/elements_of.h"
+#include "formats/gml/written/kinds.h"
 
 #include <algorithm>
 #include <array>

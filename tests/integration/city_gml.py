@@ -23,6 +23,11 @@ PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 FILES = [pathlib.Path(name).resolve() for name in sys.argv[2:]]
 
 
+def spread(value, boundaries):
+    """A value for each facet."""
+    return value if isinstance(boundaries[0][0], int) else [spread(value, part) for part in boundaries]
+
+
 class Model:
     """The objects of a CityJSON, with places in the stead of vertices and surfaces in that of their numbers."""
 
@@ -31,6 +36,7 @@ class Model:
         transform = model.get("transform", {"scale": [1, 1, 1], "translate": [0, 0, 0]})
         self.vertices = [tuple((Decimal(v) * Decimal(s) + Decimal(t)).normalize()
                                for v, s, t in zip(vertex, transform["scale"], transform["translate"])) for vertex in model["vertices"]]
+        self.appearance = model.get("appearance", {})
         self.objects = {name: self.read(value) for name, value in model["CityObjects"].items()}
 
     def read(self, value):
@@ -55,7 +61,16 @@ class Model:
 
         if str(geometry["lod"])[0] == "0" and all(surface["type"] == "GroundSurface" for surface in semantics.get("surfaces", [])):
             semantics = {"values": None}  # a footprint is one without being called so
-        return geometry["type"], str(geometry["lod"])[0], self.place(geometry["boundaries"]), surface(semantics["values"])
+        return (geometry["type"], str(geometry["lod"])[0], self.place(geometry["boundaries"]), surface(semantics["values"]),
+                {kind: {theme or "unnamed": self.look(kind, look.get("values", spread(look.get("value"), geometry["boundaries"])))
+                        for theme, look in sorted(geometry.get(kind, {}).items())} for kind in ("material", "texture")})
+
+    def look(self, kind, value, is_first=True):
+        """What the numbers of a theme mean: the first one of a ring is that of the texture."""
+        if isinstance(value, list):
+            return [self.look(kind, part, kind == "material" or i == 0 or isinstance(part, list)) for i, part in enumerate(value)]
+        name = "materials" if kind == "material" else "textures" if is_first else "vertices-texture"
+        return None if value is None else self.appearance[name][value]
 
 
 def compare(name, first, second, gml):

@@ -21,10 +21,6 @@ bool is_text_value(const Json& value) {
   return value.is_string() || value.is_boolean() || is_number_value(value);
 }
 
-std::string text_of(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : json_text(value);
-}
-
 bool is_whole_number(const Json& value) {
   if (!is_number_value(value)) return false;
   return json_text(value).find_first_of(".eE") == std::string::npos;
@@ -60,6 +56,10 @@ std::string_view generic_element(const Json& value, std::string_view type) {
 }
 
 }  // namespace
+
+std::string text_of_value(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : json_text(value);
+}
 
 /// The value of an attribute; null if there is none.
 const Json* AttributeWriter::attribute(std::string_view key) const {
@@ -114,10 +114,10 @@ void AttributeWriter::property(std::string_view prefix, std::string_view key) {
         name, text,
         {{"codeSpace", beside(key, "_codeSpace", number)}, {"uom", beside(key, "_uom", number)}});
   };
-  if (!value->is_array()) return write_one(text_of(*value), 0);
+  if (!value->is_array()) return write_one(text_of_value(*value), 0);
   std::string list;
   for (std::size_t i = 0; i < value->size(); ++i) {
-    const std::string text = text_of((*value)[i]);
+    const std::string text = text_of_value((*value)[i]);
     if (!is_list_property(key)) {
       write_one(text, i);
     } else {
@@ -136,7 +136,7 @@ void AttributeWriter::external_references() {
     if (!system.empty()) xml_.leaf("core:informationSystem", system);
     const Json& object = *find_member(reference, "externalObject");
     xml_.open("core:externalObject");
-    xml_.leaf("core:" + object.begin().key(), text_of(*object.begin()));
+    xml_.leaf("core:" + object.begin().key(), text_of_value(*object.begin()));
     xml_.close();
     xml_.close();
   };
@@ -153,7 +153,7 @@ void AttributeWriter::generic(std::string_view key, const Json& value, std::stri
     ++left_out_["attributes without a value"];
   } else if (is_measure(value)) {
     xml_.open("gen:measureAttribute", {{"name", key}});
-    xml_.leaf("gen:value", text_of(*find_member(value, "value")),
+    xml_.leaf("gen:value", text_of_value(*find_member(value, "value")),
               {{"uom", string_member(value, "uom")}});
     xml_.close();
   } else if (value.is_object()) {
@@ -163,7 +163,7 @@ void AttributeWriter::generic(std::string_view key, const Json& value, std::stri
   } else {
     if (value.is_boolean()) ++left_out_["the type of the values true and false"];
     xml_.open(generic_element(value, type), {{"name", key}});
-    xml_.leaf("gen:value", text_of(value));
+    xml_.leaf("gen:value", text_of_value(value));
     xml_.close();
   }
 }

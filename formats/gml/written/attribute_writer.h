@@ -18,6 +18,9 @@ namespace watertight::formats {
 /// The parts of a city model for which CityGML has no place, with the number of times: "materials".
 using GmlLeftOut = std::map<std::string, std::uint64_t, std::less<>>;
 
+/// A string as it is, another value as JSON.
+std::string text_of_value(const Json& value);
+
 class AttributeWriter {
  public:
   /// Both must outlive this object.

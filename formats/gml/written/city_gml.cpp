@@ -2,7 +2,6 @@
 #include "formats/gml/written/city_gml.h"
 
 #include <array>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -40,11 +39,16 @@ void open_model(XmlText& xml) {
   xml.open("core:CityModel", declarations);
 }
 
-void write_head(XmlText& xml, const CityHeader& header, const VertexTexts& box) {
+void write_head(XmlText& xml, const CityHeader& header, const VertexTexts& box,
+                GmlLeftOut& left_out) {
   const auto root = parse_json(header.text, kOwnText);
   const Json* metadata = root ? find_member(*root, "metadata") : nullptr;
   const std::string title = metadata == nullptr ? "" : string_member(*metadata, "title");
   if (!title.empty()) xml.leaf("gml:name", title);
+  const Json* appearance = root ? find_member(*root, "appearance") : nullptr;
+  for (const char* theme : {"default-theme-material", "default-theme-texture"}) {
+    if (appearance != nullptr && appearance->contains(theme)) ++left_out[theme];
+  }
   if (!box.has_box) return;
   const std::string srs = header.srid == 0 ? "" : "EPSG:" + std::to_string(header.srid);
   const auto corner = [](const std::array<VertexTexts::Bound, 3>& bounds) {
@@ -75,9 +79,9 @@ Result<std::string> write_city_gml(const Document& document) {
   }
   XmlText xml;
   GmlLeftOut left_out;
-  std::set<std::string> ids;
+  XmlIds ids;
   open_model(xml);
-  write_head(xml, *header, box);
+  write_head(xml, *header, box, left_out);
   for (const Member& member : members) {
     ObjectWriter(member.model, member.vertices, ids, xml, left_out).write_members();
   }

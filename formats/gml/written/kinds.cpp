@@ -104,6 +104,7 @@ constexpr std::array kNamespaces{
     GmlNamespace{"xmlns:frn", "http://www.opengis.net/citygml/cityfurniture/2.0"},
     GmlNamespace{"xmlns:grp", "http://www.opengis.net/citygml/cityobjectgroup/2.0"},
     GmlNamespace{"xmlns:gen", "http://www.opengis.net/citygml/generics/2.0"},
+    GmlNamespace{"xmlns:app", "http://www.opengis.net/citygml/appearance/2.0"},
     GmlNamespace{"xmlns:gml", "http://www.opengis.net/gml"},
     GmlNamespace{"xmlns:xlink", "http://www.w3.org/1999/xlink"},
     GmlNamespace{"xmlns:xAL", "urn:oasis:names:tc:ciq:xsdschema:xAL:2.0"},

@@ -61,14 +61,12 @@ class GeometryAdder {
       return;
     }
     cursor_ = BoundaryCursor(model_.boundary(boundaries->get<std::size_t>()));
-    const Json* semantics = find_member(geometry, "semantics");
-    surfaces_ = semantics == nullptr ? nullptr : find_member(*semantics, "surfaces");
-    const Json* values = semantics == nullptr ? nullptr : find_member(*semantics, "values");
+    const Values values = values_of(geometry);
     const std::string type = string_member(geometry, "type");
     if (type == "Solid") {
       add_solid(values, out);
     } else if (type == "MultiSolid" || type == "CompositeSolid") {
-      cursor_.for_each_element([&](std::size_t i) { add_solid(part(values, i), out); });
+      cursor_.for_each_element([&](std::size_t i) { add_solid(parts(values, i), out); });
     } else if (type == "MultiLineString") {
       cursor_.for_each_element([&](std::size_t) { add_line(2, out.lines); });
     } else if (type == "MultiPoint") {
@@ -84,25 +82,62 @@ class GeometryAdder {
                                                                              : nullptr;
   }
 
-  void add_solid(const Json* values, WrittenGeometry& out) {
+  /// The lists that have a value for each facet: the semantics, then those of looks_.
+  using Values = std::vector<const Json*>;
+
+  static Values parts(const Values& values, std::size_t index) {
+    Values found;
+    found.reserve(values.size());
+    for (const Json* list : values) found.push_back(part(list, index));
+    return found;
+  }
+
+  /// The lists of a geometry; sets surfaces_ and looks_.
+  Values values_of(const Json& geometry) {
+    const Json* semantics = find_member(geometry, "semantics");
+    surfaces_ = semantics == nullptr ? nullptr : find_member(*semantics, "surfaces");
+    Values values{semantics == nullptr ? nullptr : find_member(*semantics, "values")};
+    looks_.clear();
+    for (const char* kind : {"material", "texture"}) {
+      const Json* themes = find_member(geometry, kind);
+      if (themes == nullptr || !themes->is_object()) continue;
+      for (const auto& [theme, look] : themes->items()) {
+        looks_.push_back({theme, kind == std::string_view("texture"), find_member(look, "value")});
+        values.push_back(find_member(look, "values"));
+      }
+    }
+    return values;
+  }
+
+  void add_solid(const Values& values, WrittenGeometry& out) {
     std::vector<std::size_t> shells;
     cursor_.for_each_element([&](std::size_t i) {
       const std::size_t before = out.facets.size();
-      add_facets(part(values, i), out);
+      add_facets(parts(values, i), out);
       shells.push_back(out.facets.size() - before);
     });
     out.solids.push_back(std::move(shells));
   }
 
-  void add_facets(const Json* values, WrittenGeometry& out) {
+  void add_facets(const Values& values, WrittenGeometry& out) {
     cursor_.for_each_element([&](std::size_t i) {
       WrittenFacet facet;
-      cursor_.for_each_element([&](std::size_t) { add_line(1, facet.rings); });
+      std::size_t rings = 0;
+      cursor_.for_each_element([&](std::size_t) {
+        add_line(1, facet.rings);
+        ++rings;
+      });
       if (facet.rings.empty()) return;
-      const Json* value = part(values, i);
+      const Json* value = part(values.front(), i);
       if (value != nullptr && value->is_number_unsigned() && surfaces_ != nullptr) {
         facet.semantics = part(surfaces_, value->get<std::size_t>());
         facet.surfaces = surfaces_;
+      }
+      const bool is_whole = facet.rings.size() == rings;  // else textures are those of other rings
+      for (std::size_t k = 0; k < looks_.size() && is_whole; ++k) {
+        FacetLook look = looks_[k];
+        if (look.value == nullptr) look.value = part(values[k + 1], i);
+        if (look.value != nullptr && !look.value->is_null()) facet.looks.push_back(look);
       }
       out.facets.push_back(std::move(facet));
     });
@@ -126,6 +161,7 @@ class GeometryAdder {
   GmlLeftOut& left_out_;
   BoundaryCursor cursor_;
   const Json* surfaces_ = nullptr;  // of the semantics of the geometry in work
+  std::vector<FacetLook> looks_;    // of the geometry in work: the value that all facets have
 };
 
 }  // namespace
@@ -207,11 +243,16 @@ std::map<LevelAndClass, WrittenGeometry> written_geometries(const CityModel& mod
     if (chosen.type.empty()) chosen.type = type;
     if (level != std::to_string(place->first)) ++left_out["the level of detail as " + level];
     adder.add(geometry, chosen);
-    for (const char* look : {"material", "texture"}) {
-      if (geometry.contains(look)) ++left_out[std::string(look) + "s of geometries"];
-    }
   }
   return written;
+}
+
+void write_point(XmlText& xml, std::string_view position) {
+  xml.open("gml:pointMember");
+  xml.open("gml:Point");
+  xml.leaf("gml:pos", position, {{"srsDimension", "3"}});
+  xml.close();
+  xml.close();
 }
 
 }  // namespace watertight::formats

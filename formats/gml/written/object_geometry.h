@@ -33,11 +33,20 @@ struct VertexTexts {
   void join_box(const VertexTexts& other);
 };
 
+/// What a facet looks like in a theme.
+struct FacetLook {
+  std::string theme;
+  bool is_texture = false;
+  const Json* value = nullptr;  // the number of a material, or the list of a texture for each ring
+};
+
 struct WrittenFacet {
   std::vector<std::vector<BoundaryToken>> rings;
   const Json* semantics = nullptr;  // the object in `surfaces` of the geometry
   const Json* surfaces = nullptr;   // the list that it is in
-  std::string id;                   // the gml:id of the polygon if it stands in a thematic surface
+  std::vector<FacetLook> looks;
+  std::string id;              // the gml:id of the polygon, "" without one
+  bool is_in_surface = false;  // the polygon stands in a thematic surface
 };
 
 enum class GeometryClass : std::uint8_t { solids, surfaces, lines, points };
@@ -63,5 +72,8 @@ std::map<LevelAndClass, WrittenGeometry> written_geometries(const CityModel& mod
                                                             const Json& object,
                                                             const VertexTexts& vertices,
                                                             GmlLeftOut& left_out);
+
+/// Writes a member of a MultiPoint.
+void write_point(XmlText& xml, std::string_view position);
 
 }  // namespace watertight::formats

@@ -5,6 +5,8 @@
 #include <array>
 #include <string>
 
+#include "formats/gml/written/address_writer.h"
+
 namespace watertight::formats {
 namespace {
 
@@ -50,26 +52,22 @@ Json attributes_of_surface(const Json& semantics) {
   return attributes;
 }
 
-/// The value of a member as text.
-std::string json_word(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : json_text(value);
-}
-
 /// Whether the thematic surfaces say all that a geometry of surfaces has.
 bool is_said_by_surfaces(const WrittenGeometry& geometry) {
   return std::ranges::none_of(geometry.facets,
-                              [](const WrittenFacet& facet) { return facet.id.empty(); });
+                              [](const WrittenFacet& facet) { return !facet.is_in_surface; });
 }
 
 }  // namespace
 
-ObjectWriter::ObjectWriter(const CityModel& model, const VertexTexts& vertices,
-                           std::set<std::string>& ids, XmlText& xml, GmlLeftOut& left_out)
+ObjectWriter::ObjectWriter(const CityModel& model, const VertexTexts& vertices, XmlIds& ids,
+                           XmlText& xml, GmlLeftOut& left_out)
     : model_(model),
       vertices_(vertices),
       ids_(ids),
       xml_(xml),
       left_out_(left_out),
+      appearance_(model.root, xml, left_out),
       objects_(*find_member(model.root, "CityObjects")) {
   for (const auto& [id, object] : objects_.get_ref<const Json::object_t&>()) {
     object_of_.emplace(id, &object);
@@ -80,12 +78,6 @@ ObjectWriter::ObjectWriter(const CityModel& model, const VertexTexts& vertices,
 const Json* ObjectWriter::object_of(std::string_view id) const {
   const auto found = object_of_.find(id);
   return found == object_of_.end() ? nullptr : found->second;
-}
-
-/// A gml:id for an id; "" if the document has it already.
-std::string ObjectWriter::new_id(std::string_view id) {
-  std::string name = xml_name(id);
-  return ids_.insert(name).second ? name : std::string();
 }
 
 void ObjectWriter::write_members() {
@@ -103,6 +95,7 @@ void ObjectWriter::write_members() {
     ++left_out_["places in a parent, of " + string_member(object, "type")];
     write_member(id);
   }
+  appearance_.write();
 }
 
 void ObjectWriter::write_member(const std::string& id) {
@@ -130,7 +123,7 @@ void ObjectWriter::write_object(const std::string& id, std::string_view element,
 
   const std::string prefix(open.kind->prefix);
   const std::string name = prefix + ":" + std::string(element);
-  xml_.open(name, {{"gml:id", new_id(id)}});
+  xml_.open(name, {{"gml:id", ids_.take(id)}});
   if (const Json* attributes = find_member(object, "attributes")) {
     AttributeWriter(xml_, left_out_).write(*attributes, prefix, open.kind->properties);
     open.has_level = attributes->contains("lod");
@@ -148,7 +141,8 @@ void ObjectWriter::write_object(const std::string& id, std::string_view element,
   }
   write_geometries(open, are_surfaces_first ? 0 : last + 1, kMostLevel);
   write_children(object, type, true, depth);
-  write_addresses(object, is_construction(*open.kind) ? prefix : "");
+  AddressWriter(vertices_, ids_, xml_, left_out_)
+      .write(object, is_construction(*open.kind) ? prefix : std::string());
   xml_.close();
 }
 
@@ -167,7 +161,7 @@ void ObjectWriter::write_group_members(const Json& group) {
     if (!child.is_string()) continue;
     const bool has_role = roles != nullptr && roles->is_array() && i < roles->size();
     xml_.leaf("grp:groupMember", "",
-              {{"role", has_role ? json_word((*roles)[i]) : std::string()},
+              {{"role", has_role ? text_of_value((*roles)[i]) : std::string()},
                {"xlink:href", "#" + xml_name(child.get_ref<const std::string&>())}});
   }
 }
@@ -196,30 +190,41 @@ void ObjectWriter::write_child(const std::string& id, const GmlChildKind& place,
   xml_.close();
 }
 
-/// Gives each facet whose semantics CityGML has its thematic surface and a gml:id.
+/// Gives each facet whose semantics CityGML has its thematic surface, and a gml:id to each facet
+/// that something refers to.
 void ObjectWriter::find_surfaces(OpenObject& open) {
   std::map<const Json*, std::size_t> numbers;
   std::map<std::string, std::size_t> by_id;
-  const bool has_surfaces = !open.kind->element.ends_with("Furniture");
   for (auto& [place, geometry] : open.geometries) {
-    const int level = place.first;
-    const bool is_footprint = is_construction(*open.kind) && level == 0;
     for (WrittenFacet& facet : geometry.facets) {
-      if (facet.semantics == nullptr || is_footprint) continue;
-      const std::string type = string_member(*facet.semantics, "type");
-      const GmlSurfaceKind* kind = gml_surface_kind(open.kind->prefix, type);
-      const std::size_t number = kind == nullptr || level < kind->least_level || !has_surfaces
-                                     ? open.surfaces.size()
-                                     : surface_of(open, facet, numbers, by_id);
-      if (number == open.surfaces.size()) {
-        ++left_out_["semantics of facets: " + type];
-        continue;
-      }
-      facet.id = new_id(open.id + "_" + std::to_string(++open.polygons));
-      if (!facet.id.empty()) open.surfaces[number].facets[level].push_back(&facet);
+      const std::size_t number = thematic_surface_of(open, place.first, facet, numbers, by_id);
+      const bool has_surface = number < open.surfaces.size();
+      if (!has_surface && facet.looks.empty()) continue;
+      facet.id = ids_.take(open.id + "_" + std::to_string(++open.polygons));
+      facet.is_in_surface = has_surface && !facet.id.empty();
+      if (facet.is_in_surface) open.surfaces[number].facets[place.first].push_back(&facet);
     }
   }
   link_openings(open, numbers);
+}
+
+/// The number of the surface of a facet at a level; that of no surface where there is none.
+std::size_t ObjectWriter::thematic_surface_of(OpenObject& open, int level,
+                                              const WrittenFacet& facet,
+                                              std::map<const Json*, std::size_t>& numbers,
+                                              std::map<std::string, std::size_t>& by_id) {
+  const std::size_t none = open.surfaces.size();
+  const bool is_footprint = is_construction(*open.kind) && level == 0;
+  if (facet.semantics == nullptr || is_footprint) return none;
+  const std::string type = string_member(*facet.semantics, "type");
+  const GmlSurfaceKind* kind = gml_surface_kind(open.kind->prefix, type);
+  const bool has_surfaces = !open.kind->element.ends_with("Furniture");
+  std::size_t number = none;
+  if (kind != nullptr && level >= kind->least_level && has_surfaces) {
+    number = surface_of(open, facet, numbers, by_id);
+  }
+  if (number == open.surfaces.size()) ++left_out_["semantics of facets: " + type];
+  return number;
 }
 
 /// The number of the surface of a facet; that of no surface for an opening in none.
@@ -268,7 +273,7 @@ void ObjectWriter::write_surface(const OpenObject& open, const Surface& surface)
   const std::string prefix(open.kind->prefix);
   const std::string id = string_member(*surface.semantics, "id");
   xml_.open(prefix + ":" + std::string(surface.kind->type),
-            {{"gml:id", id.empty() ? std::string() : new_id(id)}});
+            {{"gml:id", id.empty() ? std::string() : ids_.take(id)}});
   const bool is_traffic = prefix == "tran";
   AttributeWriter(xml_, left_out_)
       .write(attributes_of_surface(*surface.semantics), prefix,
@@ -405,7 +410,7 @@ void ObjectWriter::write_lines(const std::string& property, GeometryClass of_cla
   xml_.open(are_points ? "gml:MultiPoint" : "gml:MultiCurve");
   for (const auto& line : found.lines) {
     if (are_points) {
-      for (const BoundaryToken vertex : line) write_point(vertex);
+      for (const BoundaryToken vertex : line) write_point(xml_, vertices_.texts[vertex]);
       continue;
     }
     std::string text;
@@ -418,14 +423,6 @@ void ObjectWriter::write_lines(const std::string& property, GeometryClass of_cla
     xml_.close();
     xml_.close();
   }
-  xml_.close();
-  xml_.close();
-}
-
-void ObjectWriter::write_point(BoundaryToken vertex) {
-  xml_.open("gml:pointMember");
-  xml_.open("gml:Point");
-  xml_.leaf("gml:pos", vertices_.texts[vertex], {{"srsDimension", "3"}});
   xml_.close();
   xml_.close();
 }
@@ -474,21 +471,26 @@ void ObjectWriter::write_multi_surface(const std::string& property, std::string_
 
 /// A facet, or with `may_refer` a reference to its polygon in a thematic surface.
 void ObjectWriter::write_surface_member(const WrittenFacet& facet, bool may_refer) {
-  if (may_refer && !facet.id.empty()) {
+  if (may_refer && facet.is_in_surface) {
     return xml_.leaf("gml:surfaceMember", "", {{"xlink:href", "#" + facet.id}});
   }
+  const bool has_texture = std::ranges::any_of(facet.looks, &FacetLook::is_texture);
+  std::vector<std::string> ring_ids(facet.rings.size());
   xml_.open("gml:surfaceMember");
   xml_.open("gml:Polygon", {{"gml:id", facet.id}});
   for (std::size_t i = 0; i < facet.rings.size(); ++i) {
-    write_ring(i == 0 ? "gml:exterior" : "gml:interior", facet.rings[i]);
+    if (has_texture) ring_ids[i] = ids_.take(facet.id + "-" + std::to_string(i));
+    write_ring(i == 0 ? "gml:exterior" : "gml:interior", facet.rings[i], ring_ids[i]);
   }
   xml_.close();
   xml_.close();
+  if (!facet.id.empty()) appearance_.add(facet, ring_ids);
 }
 
-void ObjectWriter::write_ring(std::string_view property, const std::vector<BoundaryToken>& ring) {
+void ObjectWriter::write_ring(std::string_view property, const std::vector<BoundaryToken>& ring,
+                              std::string_view id) {
   xml_.open(property);
-  xml_.open("gml:LinearRing");
+  xml_.open("gml:LinearRing", {{"gml:id", id}});
   xml_.leaf("gml:posList", ring_text(vertices_, ring), {{"srsDimension", "3"}});
   xml_.close();
   xml_.close();
@@ -505,80 +507,11 @@ void ObjectWriter::write_triangles(int level, bool has_level, const WrittenGeome
       continue;
     }
     xml_.open("gml:Triangle");
-    write_ring("gml:exterior", facet.rings.front());
+    write_ring("gml:exterior", facet.rings.front(), "");
+    if (!facet.looks.empty()) ++left_out_["materials and textures of TINRelief"];
     xml_.close();
   }
   for (int i = 0; i < 3; ++i) xml_.close();
-}
-
-void ObjectWriter::write_addresses(const Json& object, std::string_view prefix) {
-  const Json* addresses = find_member(object, "address");
-  if (addresses == nullptr) return;
-  if (prefix.empty() || !addresses->is_array()) {
-    ++left_out_["addresses"];
-    return;
-  }
-  for (const Json& address : *addresses) {
-    xml_.open(std::string(prefix) + ":address");
-    const std::string id = string_member(address, "id");
-    xml_.open("core:Address", {{"gml:id", id.empty() ? std::string() : new_id(id)}});
-    write_xal_address(address);
-    const Json* location = find_member(address, "location");
-    const Json* points = location == nullptr ? nullptr : find_member(*location, "boundaries");
-    if (points != nullptr && points->is_array() && !points->empty()) write_location(*points);
-    xml_.close();
-    xml_.close();
-  }
-}
-
-void ObjectWriter::write_location(const Json& points) {
-  xml_.open("core:multiPoint");
-  xml_.open("gml:MultiPoint");
-  for (const Json& point : points) {
-    const bool is_vertex = point.is_number_unsigned() &&
-                           point.get<std::uint64_t>() < vertices_.texts.size() &&
-                           !vertices_.texts[point.get<std::size_t>()].empty();
-    if (is_vertex) write_point(point.get<BoundaryToken>());
-  }
-  xml_.close();
-  xml_.close();
-}
-
-/// Writes the members of an address that the reader makes of xAL 2.
-void ObjectWriter::write_xal_address(const Json& address) {
-  const auto leaf = [&](std::string_view element, std::string_view member) {
-    const Json* value = find_member(address, member);
-    if (value == nullptr) return;
-    if (!value->is_array()) return xml_.leaf(element, json_word(*value));
-    for (const Json& one : *value) xml_.leaf(element, json_word(one));
-  };
-  const auto has = [&](std::string_view member) { return address.contains(member); };
-  xml_.open("core:xalAddress");
-  xml_.open("xAL:AddressDetails");
-  xml_.open("xAL:Country");
-  leaf("xAL:CountryName", "Country");
-  xml_.open("xAL:Locality", {{"Type", string_member(address, "Locality_Type")}});
-  leaf("xAL:LocalityName", "Locality");
-  if (has("ThoroughfareName") || has("ThoroughfareNumber")) {
-    xml_.open("xAL:Thoroughfare", {{"Type", string_member(address, "Thoroughfare_Type")}});
-    leaf("xAL:ThoroughfareNumber", "ThoroughfareNumber");
-    leaf("xAL:ThoroughfareNumberSuffix", "ThoroughfareNumberSuffix");
-    leaf("xAL:ThoroughfareName", "ThoroughfareName");
-    xml_.close();
-  }
-  if (has("Postcode")) {
-    xml_.open("xAL:PostalCode");
-    leaf("xAL:PostalCodeNumber", "Postcode");
-    xml_.close();
-  }
-  for (int i = 0; i < 4; ++i) xml_.close();
-  for (const auto& [key, value] : address.items()) {
-    if (!has_word("id Country Locality Locality_Type ThoroughfareName ThoroughfareNumber "
-                  "ThoroughfareNumberSuffix Thoroughfare_Type Postcode location",
-                  key)) {
-      ++left_out_["the member " + key + " of addresses"];
-    }
-  }
 }
 
 }  // namespace watertight::formats

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "formats/city_json/sax.h"
+#include "formats/gml/written/appearance_writer.h"
 #include "formats/gml/written/attribute_writer.h"
 #include "formats/gml/written/kinds.h"
 #include "formats/gml/written/object_geometry.h"
@@ -22,10 +23,11 @@ namespace watertight::formats {
 class ObjectWriter {
  public:
   /// All must outlive this object. `ids`: the gml:ids of the document so far.
-  ObjectWriter(const CityModel& model, const VertexTexts& vertices, std::set<std::string>& ids,
-               XmlText& xml, GmlLeftOut& left_out);
+  ObjectWriter(const CityModel& model, const VertexTexts& vertices, XmlIds& ids, XmlText& xml,
+               GmlLeftOut& left_out);
 
-  /// Writes each object that stands in no other one as a member of the model.
+  /// Writes each object that stands in no other one as a member of the model, then what facets
+  /// look like.
   void write_members();
 
  private:
@@ -60,7 +62,6 @@ class ObjectWriter {
   void write_footprints(const OpenObject& open, const WrittenGeometry& found);
   void write_lines(const std::string& property, GeometryClass of_class,
                    const WrittenGeometry& found);
-  void write_point(BoundaryToken vertex);
   void write_solids(const std::string& property, std::string_view several,
                     const WrittenGeometry& found);
   void write_solid(const WrittenGeometry& found, const std::vector<std::size_t>& shells,
@@ -69,23 +70,24 @@ class ObjectWriter {
                            const std::vector<const WrittenFacet*>& facets, bool may_refer);
   void write_surface_member(const WrittenFacet& facet, bool may_refer);
   void write_triangles(int level, bool has_level, const WrittenGeometry& found);
-  void write_ring(std::string_view property, const std::vector<BoundaryToken>& ring);
+  void write_ring(std::string_view property, const std::vector<BoundaryToken>& ring,
+                  std::string_view id);
   void find_surfaces(OpenObject& open);
+  std::size_t thematic_surface_of(OpenObject& open, int level, const WrittenFacet& facet,
+                                  std::map<const Json*, std::size_t>& numbers,
+                                  std::map<std::string, std::size_t>& by_id);
   std::size_t surface_of(OpenObject& open, const WrittenFacet& facet,
                          std::map<const Json*, std::size_t>& numbers,
                          std::map<std::string, std::size_t>& by_id);
   void link_openings(OpenObject& open, const std::map<const Json*, std::size_t>& numbers);
   void write_surface(const OpenObject& open, const Surface& surface);
-  void write_addresses(const Json& object, std::string_view prefix);
-  void write_location(const Json& points);
-  void write_xal_address(const Json& address);
-  std::string new_id(std::string_view id);
 
   const CityModel& model_;
   const VertexTexts& vertices_;
-  std::set<std::string>& ids_;
+  XmlIds& ids_;
   XmlText& xml_;
   GmlLeftOut& left_out_;
+  AppearanceWriter appearance_;
   const Json& objects_;
   std::unordered_map<std::string_view, const Json*> object_of_;  // by id
   std::set<std::string, std::less<>> written_;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,5 +43,18 @@ class XmlText {
 /// The text itself if it can be the name of an element and so a gml:id, else such a name for it,
 /// which no other text has. Requires UTF-8.
 std::string xml_name(std::string_view text);
+
+/// The ids of a document.
+class XmlIds {
+ public:
+  /// The xml_name() of an id; "" if the document has it already.
+  std::string take(std::string_view id) {
+    std::string name = xml_name(id);
+    return taken_.insert(name).second ? name : std::string();
+  }
+
+ private:
+  std::set<std::string> taken_;
+};
 
 }  // namespace watertight::formats

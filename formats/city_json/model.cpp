@@ -80,9 +80,7 @@ Status index_geometry(const Json& geometry, std::string_view id, GeometryRef ref
   if (type == nullptr || !type->is_string())
     return malformed_at("the geometry has no type", pointer);
   ref.type = type->get<std::string>();
-  if (const Json* lod = find_member(geometry, "lod"); lod != nullptr) {
-    ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
-  }
+  ref.lod = level_of(geometry);
   const Json* boundaries = find_member(geometry, "boundaries");
   if (boundaries != nullptr && !boundaries->is_number_unsigned()) {
     return wrong_boundaries(*boundaries, pointer);
@@ -284,6 +282,16 @@ Result<CityHeader> city_header(const Json& root) {
     header.template_count = templates->size();
   }
   return header;
+}
+
+std::string level_of(const Json& geometry) {
+  const Json* lod = find_member(geometry, "lod");
+  if (lod == nullptr) return {};
+  return lod->is_string() ? lod->get<std::string>() : json_text(*lod);
+}
+
+const Json* element_of(const Json* list, std::size_t number) {
+  return list != nullptr && list->is_array() && number < list->size() ? &(*list)[number] : nullptr;
 }
 
 Result<std::string> feature_id(const Json& root) {

@@ -92,6 +92,12 @@ struct CitySolid {
 /// The error malformed with a JSON Pointer.
 Error malformed_at(std::string message, std::string pointer);
 
+/// The level of detail of a geometry as its document writes it; "" without one.
+std::string level_of(const Json& geometry);
+/// The element of a list with this number, of values by solid, shell and facet for example; null
+/// where there is none.
+const Json* element_of(const Json* list, std::size_t number);
+
 /// The id that a CityJSONFeature states. Errors: malformed (another type, no id).
 Result<std::string> feature_id(const Json& root);
 

@@ -91,9 +91,7 @@ class TemplateReader {
     GeometryRef ref{
         number, number, model_.boundary_begin.size() - 1, string_member(geometry, "type"), {}};
     if (ref.type.empty()) return malformed_at("the template has no type", pointer);
-    if (const Json* lod = find_member(geometry, "lod"); lod != nullptr) {
-      ref.lod = lod->is_string() ? lod->get<std::string>() : json_text(*lod);
-    }
+    ref.lod = level_of(geometry);
     const Json* boundaries = find_member(geometry, "boundaries");
     if (boundaries == nullptr || !boundaries->is_array()) {
       return malformed_at("the template has no boundaries", pointer);

@@ -98,13 +98,6 @@ std::span<const BoundaryToken> boundaries_of(const CityModel& model, const Json&
   return own;
 }
 
-/// The level of detail of a geometry as its document writes it; "" without one.
-std::string level_of(const Json& geometry) {
-  const Json* lod = find_member(geometry, "lod");
-  if (lod == nullptr) return {};
-  return lod->is_string() ? lod->get<std::string>() : json_text(*lod);
-}
-
 /// The rank of a level of detail: higher ones are larger numbers.
 double rank_of(std::string_view level) {
   double rank = kNoLevel;
@@ -152,12 +145,6 @@ struct Semantics {
     return semantics;
   }
 
-  /// The values of the list `index` of a list of values; null where there are none.
-  static const Json* part(const Json* values, std::size_t index) {
-    return values != nullptr && values->is_array() && index < values->size() ? &(*values)[index]
-                                                                             : nullptr;
-  }
-
   FacetKind kind(const Json* value) const {
     if (value == nullptr || !value->is_number_unsigned()) return FacetKind::none;
     const auto index = value->get<std::uint64_t>();
@@ -192,7 +179,7 @@ class ShapeBuilder {
     } else if (type == "Solid") {
       add_solid(values);
     } else if (type == "MultiSolid" || type == "CompositeSolid") {
-      cursor_.for_each_element([&](std::size_t i) { add_solid(Semantics::part(values, i)); });
+      cursor_.for_each_element([&](std::size_t i) { add_solid(element_of(values, i)); });
     }
   }
 
@@ -201,7 +188,7 @@ class ShapeBuilder {
     std::vector<CityShapes::Shell> solid;
     cursor_.for_each_element([&](std::size_t i) {
       const std::size_t first = shapes_.polygons.size();
-      add_surfaces(Semantics::part(values, i));
+      add_surfaces(element_of(values, i));
       solid.push_back({first, shapes_.polygons.size() - first});
     });
     shapes_.solids.push_back(std::move(solid));
@@ -209,7 +196,7 @@ class ShapeBuilder {
 
   void add_surfaces(const Json* values) {
     cursor_.for_each_element(
-        [&](std::size_t i) { add_surface(semantics_.kind(Semantics::part(values, i))); });
+        [&](std::size_t i) { add_surface(semantics_.kind(element_of(values, i))); });
   }
 
   /// Without the exterior ring there is no polygon: a hole would be one.

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formats/gml/written/appearance_writer.h"
 
+#include "formats/city_json/model.h"
+
 namespace watertight::formats {
 namespace {
-
-/// The element of a list with this number; null if there is none.
-const Json* element(const Json* list, std::size_t number) {
-  return list != nullptr && list->is_array() && number < list->size() ? &(*list)[number] : nullptr;
-}
 
 /// A list of numbers between blanks; "" for another value.
 std::string numbers_text(const Json& list) {
@@ -45,7 +42,7 @@ void AppearanceWriter::add(const WrittenFacet& facet, const std::vector<std::str
     if (look.is_texture) {
       add_texture(look, facet, ring_ids);
     } else if (look.value->is_number_unsigned() &&
-               element(materials_, look.value->get<std::size_t>()) != nullptr) {
+               element_of(materials_, look.value->get<std::size_t>()) != nullptr) {
       themes_[look.theme].materials[look.value->get<std::size_t>()].push_back(facet.id);
     } else {
       ++left_out_["materials that do not exist"];
@@ -58,13 +55,13 @@ void AppearanceWriter::add(const WrittenFacet& facet, const std::vector<std::str
 void AppearanceWriter::add_texture(const FacetLook& look, const WrittenFacet& facet,
                                    const std::vector<std::string>& ring_ids) {
   for (std::size_t i = 0; i < facet.rings.size(); ++i) {
-    const Json* ring = element(look.value, i);
-    const Json* number = ring == nullptr ? nullptr : element(ring, 0);
+    const Json* ring = element_of(look.value, i);
+    const Json* number = ring == nullptr ? nullptr : element_of(ring, 0);
     if (number == nullptr || number->is_null()) continue;
     const std::string coordinates =
         ring->size() == facet.rings[i].size() + 1 ? coordinates_of(*ring) : std::string();
-    const bool is_known =
-        number->is_number_unsigned() && element(textures_, number->get<std::size_t>()) != nullptr;
+    const bool is_known = number->is_number_unsigned() &&
+                          element_of(textures_, number->get<std::size_t>()) != nullptr;
     if (!is_known || coordinates.empty() || ring_ids[i].empty()) {
       ++left_out_["textures of rings that cannot be read"];
       continue;
@@ -80,7 +77,7 @@ std::string AppearanceWriter::coordinates_of(const Json& ring) const {
   for (std::size_t i = 1; i <= ring.size(); ++i) {
     const Json& number = ring[i < ring.size() ? i : 1];
     const Json* vertex =
-        number.is_number_unsigned() ? element(vertices_, number.get<std::size_t>()) : nullptr;
+        number.is_number_unsigned() ? element_of(vertices_, number.get<std::size_t>()) : nullptr;
     const std::string pair = vertex == nullptr || vertex->size() != 2 ? "" : numbers_text(*vertex);
     if (pair.empty()) return {};
     text.append(text.empty() ? "" : " ").append(pair);

@@ -8,18 +8,13 @@
 #include <utility>
 
 #include "formats/city_json/boundary_cursor.h"
+#include "formats/city_json/model.h"
 #include "geometry/lattice/lattice.h"
 
 namespace watertight::formats {
 namespace {
 
 constexpr int kUnstatedLevel = 1;  // the reader takes the same
-
-std::string level_text(const Json& geometry) {
-  const Json* lod = find_member(geometry, "lod");
-  if (lod == nullptr) return {};
-  return lod->is_string() ? lod->get<std::string>() : json_text(*lod);
-}
 
 /// The number that a level of detail is; that of none for another text.
 double level_number(std::string_view level) {
@@ -77,18 +72,13 @@ class GeometryAdder {
   }
 
  private:
-  static const Json* part(const Json* values, std::size_t index) {
-    return values != nullptr && values->is_array() && index < values->size() ? &(*values)[index]
-                                                                             : nullptr;
-  }
-
   /// The lists that have a value for each facet: the semantics, then those of looks_.
   using Values = std::vector<const Json*>;
 
   static Values parts(const Values& values, std::size_t index) {
     Values found;
     found.reserve(values.size());
-    for (const Json* list : values) found.push_back(part(list, index));
+    for (const Json* list : values) found.push_back(element_of(list, index));
     return found;
   }
 
@@ -128,15 +118,15 @@ class GeometryAdder {
         ++rings;
       });
       if (facet.rings.empty()) return;
-      const Json* value = part(values.front(), i);
+      const Json* value = element_of(values.front(), i);
       if (value != nullptr && value->is_number_unsigned() && surfaces_ != nullptr) {
-        facet.semantics = part(surfaces_, value->get<std::size_t>());
+        facet.semantics = element_of(surfaces_, value->get<std::size_t>());
         facet.surfaces = surfaces_;
       }
       const bool is_whole = facet.rings.size() == rings;  // else textures are those of other rings
       for (std::size_t k = 0; k < looks_.size() && is_whole; ++k) {
         FacetLook look = looks_[k];
-        if (look.value == nullptr) look.value = part(values[k + 1], i);
+        if (look.value == nullptr) look.value = element_of(values[k + 1], i);
         if (look.value != nullptr && !look.value->is_null()) facet.looks.push_back(look);
       }
       out.facets.push_back(std::move(facet));
@@ -221,15 +211,15 @@ std::map<LevelAndClass, WrittenGeometry> written_geometries(const CityModel& mod
   const Json* list = find_member(object, "geometry");
   if (list == nullptr || !list->is_array()) return written;
   for (const Json& geometry : *list) {
-    const auto place = place_of(string_member(geometry, "type"), level_text(geometry));
+    const auto place = place_of(string_member(geometry, "type"), level_of(geometry));
     if (!place) continue;
     std::string& level = written[*place].level;
-    level = std::max(level, level_text(geometry), is_lower);
+    level = std::max(level, level_of(geometry), is_lower);
   }
   GeometryAdder adder(model, vertices, left_out);
   for (const Json& geometry : *list) {
     const std::string type = string_member(geometry, "type");
-    const std::string level = level_text(geometry);
+    const std::string level = level_of(geometry);
     const auto place = place_of(type, level);
     if (!place) {
       ++left_out["geometries of type " + type];

@@ -43,6 +43,16 @@ CREATE FUNCTION wt_hang_up(start text) RETURNS void LANGUAGE sql AS $$
 $$;
 COMMENT ON FUNCTION wt_hang_up(text) IS 'closes the connections of dblink whose names begin with a text';
 
+-- dblink_send_query answers 0 and goes on where the connection broke; rows would be lost without an error.
+CREATE FUNCTION wt_send(connection text, statements text) RETURNS void LANGUAGE plpgsql AS $$
+  BEGIN
+    IF dblink_send_query(connection, statements) <> 1 THEN
+      RAISE 'the connection % broke before its shard got the statements', connection
+        USING ERRCODE = 'connection_failure', DETAIL = dblink_error_message(connection), HINT = 'Make the call again.';
+    END IF;
+  END $$;
+COMMENT ON FUNCTION wt_send(text, text) IS 'sends statements to a shard through a connection of dblink, whose results are fetched later';
+
 CREATE FUNCTION wt_add_shard(shard text, host text, port int, dbname text, username text, password text DEFAULT NULL)
   RETURNS void LANGUAGE plpgsql AS $$
   DECLARE
@@ -164,7 +174,7 @@ CREATE FUNCTION wt_load(parent regclass, query text, batch int DEFAULT 500, skip
         IF NOT one = ANY (coalesce(dblink_get_connections(), '{}')) THEN
           PERFORM dblink_connect(one, statement.shards[i]);
         END IF;
-        PERFORM dblink_send_query(one, statement.texts[i]);
+        PERFORM @extschema@.wt_send(one, statement.texts[i]);
       END LOOP;
       FOR i IN 1 .. cardinality(statement.shards) LOOP
         LOOP
@@ -197,7 +207,7 @@ CREATE FUNCTION wt_ask_parts(parent regclass, query text, OUT part text, OUT sha
                  replace(query, '$part', format('public.%I', c.relname))), ' UNION ALL ' ORDER BY p.remainder) AS text
         FROM @extschema@.wt_parts p JOIN pg_class c ON c.oid = p.part WHERE p.parent = wt_ask_parts.parent GROUP BY 1 LOOP
       PERFORM dblink_connect('wt_ask_' || asked.shard, asked.shard);
-      PERFORM dblink_send_query('wt_ask_' || asked.shard, asked.text);
+      PERFORM @extschema@.wt_send('wt_ask_' || asked.shard, asked.text);
       shards := shards || asked.shard;
     END LOOP;
     FOR wt_ask_parts.shard IN SELECT s FROM unnest(shards) AS s ORDER BY 1 LOOP

@@ -96,9 +96,22 @@ def test_refusals(coordinator, servers):
     expect("a shard without the extension", "has version none" in done.stderr, True)
 
 
+def test_broken_connection(coordinator, shard):
+    """A connection that broke just before rows went into it: the call fails, and can be made again."""
+    postmaster = (shard.folder / "postmaster.pid").read_text().split()[0]
+    call = f"SELECT sum(stored) FROM wt_load('city', $query${boxes(2000, 2199)}$query$)"
+    done = coordinator.psql("SELECT dblink_connect('wt_load_west', 'west')", f"\\! pkill -9 -P {postmaster}", call, check=False)
+    expect("a load whose shard is gone fails", done.returncode != 0, True)
+    for _ in range(100):
+        if coordinator.psql(call, check=False).returncode == 0:
+            break
+        time.sleep(0.1)
+    expect("all rows are there once", coordinator.ask(EVERYTHING), volume_of(2200))
+
+
 def test_outage(coordinator, shard):
     """Rows come in calls of 200; a shard is killed meanwhile. A call that failed is made again."""
-    acknowledged = 2000
+    acknowledged = 2200
     failures = 0
     killer = threading.Timer(0.8, shard.kill)
     killer.start()
@@ -208,6 +221,7 @@ def main():
             expect("all rows are there once", coordinator.ask(EVERYTHING), volume_of(2000))
             test_queries(coordinator)
             test_refusals(coordinator, servers)
+            test_broken_connection(coordinator, servers["west"])
             test_outage(coordinator, servers["west"])
             test_moves(coordinator, servers)
     print("a table spread over shards lost nothing")

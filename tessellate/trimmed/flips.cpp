@@ -3,11 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <memory_resource>
 
 #include "tessellate/trimmed/neighbours.h"
 #include "tessellate/trimmed/plane_predicates.h"
 #include "tessellate/trimmed/region.h"
+#include "tessellate/trimmed/work_memory.h"
 
 namespace watertight::tessellate {
 namespace {
@@ -28,34 +29,38 @@ bool is_delaunay(std::span<const Point> points, const std::array<Index, 4>& quad
 }
 
 void restore_delaunay(std::span<const Point> points, std::span<Triangle> triangles,
-                      std::span<std::uint32_t> twins, std::vector<std::uint32_t> waiting) {
-  std::vector<bool> waits(twins.size(), false);
-  for (const std::uint32_t edge : waiting) waits[edge] = true;
+                      std::span<std::uint32_t> twins, std::span<const std::uint32_t> edges) {
+  WorkMemory memory;
+  std::pmr::vector<std::uint32_t> waiting(edges.begin(), edges.end(), memory.get());
+  std::pmr::vector<std::uint8_t> waits(twins.size(), 0, memory.get());
+  for (const std::uint32_t edge : waiting) waits[edge] = 1;
   const std::size_t most = kMostFlips * triangles.size();
   for (std::size_t flips = 0; !waiting.empty() && flips < most;) {
     const std::uint32_t edge = waiting.back();
     waiting.pop_back();
-    waits[edge] = false;
+    waits[edge] = 0;
     const std::uint32_t twin = twins[edge];
     if (twin == kNone) continue;
     if (is_delaunay(points, quadrangle_at(triangles, edge, twin))) continue;
     flip(triangles, twins, edge);
     ++flips;
     for (const std::uint32_t side : {edge, next_edge(edge), twin, next_edge(twin)}) {
-      if (twins[side] == kNone || waits[side] || waits[twins[side]]) continue;
+      if (twins[side] == kNone || waits[side] != 0 || waits[twins[side]] != 0) continue;
       waiting.push_back(side);
-      waits[side] = true;
+      waits[side] = 1;
     }
   }
 }
 
 void flip_to_delaunay(std::span<const Point> points, std::vector<Triangle>& triangles) {
   std::vector<std::uint32_t> twins = twins_of(triangles, points.size());
-  std::vector<std::uint32_t> waiting;
+  WorkMemory memory;
+  std::pmr::vector<std::uint32_t> waiting(memory.get());
+  waiting.reserve(twins.size() / 2);
   for (std::uint32_t edge = 0; edge < twins.size(); ++edge) {
     if (twins[edge] != kNone && twins[edge] > edge) waiting.push_back(edge);
   }
-  restore_delaunay(points, triangles, twins, std::move(waiting));
+  restore_delaunay(points, triangles, twins, waiting);
 }
 
 }  // namespace watertight::tessellate

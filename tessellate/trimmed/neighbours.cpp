@@ -2,36 +2,50 @@
 #include "tessellate/trimmed/neighbours.h"
 
 #include <algorithm>
+#include <memory_resource>
 #include <numeric>
+
+#include "tessellate/trimmed/work_memory.h"
 
 namespace watertight::tessellate {
 
 std::vector<std::uint32_t> twins_of(std::span<const Triangle> triangles, std::size_t point_count) {
-  const auto edge_count = static_cast<std::uint32_t>(3 * triangles.size());
-  const auto smaller_end = [&](std::uint32_t edge) {
-    return std::min(start_of(triangles, edge), start_of(triangles, next_edge(edge)));
+  struct OpenEdge {
+    std::uint32_t edge;
+    Index from;
+    Index to;
   };
-  std::vector<std::uint32_t> first(point_count + 1, 0);
-  for (std::uint32_t edge = 0; edge < edge_count; ++edge) ++first[smaller_end(edge) + 1];
+  WorkMemory memory;
+  // The edges without a twin so far, by their smaller end: those of vertex i from first[i] on.
+  std::pmr::vector<std::uint32_t> first(point_count + 2, 0, memory.get());
+  for (const auto& [a, b, c] : triangles) {
+    ++first[std::min(a, b) + 2];
+    ++first[std::min(b, c) + 2];
+    ++first[std::min(c, a) + 2];
+  }
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::uint32_t> at(first.begin(), first.end() - 1);
-  std::vector<std::uint32_t> edges(edge_count);
-  std::vector<std::uint32_t> twins(edge_count, kNone);
-  for (std::uint32_t edge = 0; edge < edge_count; ++edge) {
-    const Index end = smaller_end(edge);
-    // The edges of one vertex are few, but for hubs of fans.
-    for (std::uint32_t i = first[end]; i < at[end]; ++i) {
-      const std::uint32_t other = edges[i];
-      if (start_of(triangles, other) != start_of(triangles, next_edge(edge)) ||
-          start_of(triangles, next_edge(other)) != start_of(triangles, edge)) {
+  const std::span<std::uint32_t> end(first.begin() + 1, first.end());  // grows to the next first
+  std::pmr::vector<OpenEdge> open(3 * triangles.size(), memory.get());
+  std::pmr::vector<std::uint32_t> begin(first.begin() + 1, first.end(), memory.get());
+  std::vector<std::uint32_t> twins(3 * triangles.size(), kNone);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const Index from = triangles[t][k];
+      const Index to = triangles[t][k == 2 ? 0 : k + 1];
+      const Index low = std::min(from, to);
+      // The edges of one vertex are few, but for hubs of fans.
+      const auto here = std::span(open).subspan(begin[low], end[low] - begin[low]);
+      const auto other = std::find_if(here.begin(), here.end(), [&](const OpenEdge& edge) {
+        return edge.from == to && edge.to == from;
+      });
+      if (other == here.end()) {
+        open[end[low]++] = {3 * t + k, from, to};
         continue;
       }
-      twins[edge] = other;
-      twins[other] = edge;
-      edges[i] = edges[--at[end]];
-      break;
+      twins[3 * t + k] = other->edge;
+      twins[other->edge] = 3 * t + k;
+      *other = open[--end[low]];
     }
-    if (twins[edge] == kNone) edges[at[end]++] = edge;
   }
   return twins;
 }

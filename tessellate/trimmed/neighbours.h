@@ -39,8 +39,8 @@ void flip(std::span<Triangle> triangles, std::span<std::uint32_t> twins, std::ui
 /// left, is Delaunay (flip_to_delaunay).
 bool is_delaunay(std::span<const Point> points, const std::array<Index, 4>& quadrangle);
 
-/// flip_to_delaunay() where only the waiting edges, each once, may not be Delaunay.
+/// flip_to_delaunay() where only the given edges, each once, may not be Delaunay.
 void restore_delaunay(std::span<const Point> points, std::span<Triangle> triangles,
-                      std::span<std::uint32_t> twins, std::vector<std::uint32_t> waiting);
+                      std::span<std::uint32_t> twins, std::span<const std::uint32_t> edges);
 
 }  // namespace watertight::tessellate

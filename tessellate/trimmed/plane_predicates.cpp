@@ -4,6 +4,16 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 namespace watertight::tessellate {
+namespace {
+
+/// Whether a, b, c, d are the corners of a rectangle with sides along the axes, as cells of grids
+/// are.
+bool is_upright_rectangle(const Point& a, const Point& b, const Point& c, const Point& d) {
+  return (a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y) ||
+         (a.y == b.y && b.x == c.x && c.y == d.y && d.x == a.x);
+}
+
+}  // namespace
 
 int side_of_circle(const Point& a, const Point& b, const Point& c, const Point& d) {
   const double ax = a.x - d.x;
@@ -28,6 +38,7 @@ int side_of_circle(const Point& a, const Point& b, const Point& c, const Point& 
   constexpr double kSmall = 1e-150;                     // more than underflow can cause
   constexpr double kLarge = 1e300;
   if (std::abs(value) > kError * size + kSmall && size < kLarge) return value > 0 ? 1 : -1;
+  if (is_upright_rectangle(a, b, c, d)) return 0;
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   const auto in_plane = [](const Point& p) { return Kernel::Point_2(p.x, p.y); };
   return CGAL::side_of_oriented_circle(in_plane(a), in_plane(b), in_plane(c), in_plane(d));

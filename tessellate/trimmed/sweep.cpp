@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstddef>
+#include <memory_resource>
 #include <numeric>
 #include <set>
 
 #include "tessellate/trimmed/plane_predicates.h"
 #include "tessellate/trimmed/region.h"
+#include "tessellate/trimmed/work_memory.h"
 
 namespace watertight::tessellate {
 namespace {
@@ -29,7 +31,7 @@ struct ChainLink {
 class Sweep {
  public:
   explicit Sweep(const Region& region)
-      : region_(region), points_(region.points), status_(Order{*this}) {}
+      : region_(region), points_(region.points), status_(Order{*this}, memory_.get()) {}
 
   RegionTriangles run() {
     if (prepare()) {
@@ -62,7 +64,9 @@ class Sweep {
     }
     bool operator()(const Active& a, Index vertex) const { return sweep.side(a.edge, vertex) < 0; }
   };
-  using Status = std::set<Active, Order>;
+  using Status = std::pmr::set<Active, Order>;
+  template <class T>
+  using Vector = std::pmr::vector<T>;
 
   int turn_at(Index a, Index b, Index c) const { return turn(points_[a], points_[b], points_[c]); }
   /// +1 if the vertex is left of the edge, seen upwards.
@@ -77,6 +81,7 @@ class Sweep {
   PlaneEdge ends_of(Index edge) const { return {edges_[edge].lower, edges_[edge].upper}; }
 
   bool prepare() {
+    edges_.reserve(region_.edges.size());
     order_.resize(points_.size());
     std::iota(order_.begin(), order_.end(), Index{0});
     std::sort(order_.begin(), order_.end(),
@@ -117,8 +122,8 @@ class Sweep {
     starting_.resize(edges_.size());
     ending_.resize(edges_.size());
     place_.resize(edges_.size());
-    std::vector<Index> start(first_start_.begin(), first_start_.end() - 1);
-    std::vector<Index> end(first_end_.begin(), first_end_.end() - 1);
+    Vector<Index> start(first_start_.begin(), first_start_.end() - 1, memory_.get());
+    Vector<Index> end(first_end_.begin(), first_end_.end() - 1, memory_.get());
     for (Index edge = 0; edge < edges_.size(); ++edge) {
       starting_[start[edges_[edge].lower]++] = edge;
       ending_[end[edges_[edge].upper]++] = edge;
@@ -260,16 +265,18 @@ class Sweep {
 
   const Region& region_;
   std::span<const Point> points_;
-  std::vector<SweepEdge> edges_;
-  std::vector<Index> order_;  // vertices from below
-  std::vector<Index> first_start_;
-  std::vector<Index> first_end_;
-  std::vector<Index> starting_;  // edges by their lower vertex
-  std::vector<Index> ending_;    // edges by their upper vertex
-  std::vector<int> balance_;     // vertex -> edges that begin there less those that end
+  WorkMemory memory_;
+  Vector<SweepEdge> edges_{memory_.get()};
+  Vector<Index> order_{memory_.get()};  // vertices from below
+  Vector<Index> first_start_{memory_.get()};
+  Vector<Index> first_end_{memory_.get()};
+  Vector<Index> starting_{memory_.get()};  // edges by their lower vertex
+  Vector<Index> ending_{memory_.get()};    // edges by their upper vertex
+  Vector<int> balance_{memory_.get()};     // vertex -> edges that begin there less those that end
   Status status_;
-  std::vector<Status::iterator> place_;  // edge -> where it stands among those that the line meets
-  std::vector<ChainLink> links_;
+  // Edge -> where it stands among those that the line meets.
+  Vector<Status::iterator> place_{memory_.get()};
+  Vector<ChainLink> links_{memory_.get()};
   RegionTriangles result_;
 };
 

@@ -329,7 +329,7 @@ void TrimmedMesh::splice(const Change& change, std::span<const Triangle> triangl
     triangles_.pop_back();
     twins_.resize(3 * triangles_.size());
   }
-  restore_delaunay(points_, triangles_, twins_, std::move(waiting));
+  restore_delaunay(points_, triangles_, twins_, waiting);
 }
 
 void TrimmedMesh::move_triangle(std::uint32_t from, std::uint32_t to) {

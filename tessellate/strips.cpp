@@ -12,6 +12,8 @@
 namespace watertight::tessellate {
 namespace {
 
+constexpr int kMostTurns = 4;
+
 class StripMaker {
  public:
   StripMaker(std::span<const Triangle> triangles, std::size_t point_count)
@@ -30,10 +32,12 @@ class StripMaker {
     }
     std::vector<Strip> strips;
     while (const auto start = next_start()) {
-      Walk best;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        Walk walk = walk_from(3 * *start + k);
-        if (walk.triangles.size() > best.triangles.size()) best = std::move(walk);
+      Walk best = best_walk_from(*start);
+      // The way back from its end may go on beyond its start.
+      for (int turns = 0; turns < kMostTurns; ++turns) {
+        Walk back = best_walk_from(best.triangles.back());
+        if (!is_better(back, best)) break;
+        best = std::move(back);
       }
       for (const std::uint32_t triangle : best.triangles) take(triangle);
       strips.push_back(std::move(best.strip));
@@ -46,6 +50,22 @@ class StripMaker {
     Strip strip;
     std::vector<std::uint32_t> triangles;
   };
+
+  /// Whether a walk has fewer indices for each triangle, or as many with more triangles.
+  static bool is_better(const Walk& walk, const Walk& other) {
+    const std::size_t one = walk.strip.size() * other.triangles.size();
+    const std::size_t two = other.strip.size() * walk.triangles.size();
+    return one != two ? one < two : walk.triangles.size() > other.triangles.size();
+  }
+
+  Walk best_walk_from(std::uint32_t triangle) {
+    Walk best = walk_from(3 * triangle);
+    for (std::uint32_t k = 1; k < 3; ++k) {
+      Walk walk = walk_from(3 * triangle + k);
+      if (is_better(walk, best)) best = std::move(walk);
+    }
+    return best;
+  }
 
   /// A triangle with the fewest neighbours that are left; nothing when all are taken.
   std::optional<std::uint32_t> next_start() {

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Triangulates random trimmed regions of the plane, beside CGAL's constrained Delaunay
-// triangulation. One thread.
+// triangulation and, where Debian's package libtess2-tulip-5.4 is installed, libtess2. One thread.
 //
 //   regions shape       least angles, strips, and edges at a vertex, for grids and loops
 //   regions speed       million triangles a second, for loops with holes
+//   regions loops N H   the regions of `speed` with N vertices and H holes, a loop a line, for
+//                       earcut.py
 //   regions update      microseconds of an update, and its share of a fresh run
 //   regions check N     N regions, one in fifty with a moved point: the verdict is compared with an
 //                       exact test of all pairs of edges, and of how loops contain each other
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_mesh_face_base_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/mark_domain_in_triangulation.h>
+#include <dlfcn.h>
 
 #include <algorithm>
 #include <array>
@@ -18,14 +23,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <map>
+#include <iterator>
+#include <limits>
 #include <random>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "geometry/predicates/predicates.h"
+#include "tessellate/few_vertices.h"
 #include "tessellate/strips.h"
 #include "tessellate/trimmed/grid.h"
 #include "tessellate/trimmed/trimmed_mesh.h"
@@ -109,12 +117,15 @@ double mean_least_angle(std::span<const Point> points, std::span<const Triangle>
   return sum / static_cast<double>(triangles.size());
 }
 
-// CGAL's triangulation; a face inside the loops is an odd number of edges away from outside.
+// CGAL's triangulation, with the faces inside the loops marked.
 class Peer {
  public:
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Faces = CGAL::Delaunay_mesh_face_base_2<Kernel>;
+  using Structure =
+      CGAL::Triangulation_data_structure_2<CGAL::Triangulation_vertex_base_2<Kernel>, Faces>;
   using Triangulation =
-      CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Default,
+      CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
                                                  CGAL::No_constraint_intersection_tag>;
 
   Peer(std::span<const Point> points, const Region& loops) {
@@ -125,29 +136,19 @@ class Peer {
       hint = handles.back()->face();
     }
     for (const auto& [from, to] : loops.edges) all_.insert_constraint(handles[from], handles[to]);
+    CGAL::mark_domain_in_triangulation(all_);
   }
 
   double mean_least_angle() const {
     double sum = 0;
     std::size_t count = 0;
-    std::map<Triangulation::Face_handle, bool> is_inside{{all_.infinite_face(), false}};
-    std::vector<Triangulation::Face_handle> waiting{all_.infinite_face()};
-    while (!waiting.empty()) {
-      const auto face = waiting.back();
-      waiting.pop_back();
-      const bool own = is_inside.at(face);
-      if (own) {
-        const auto corner = [&](int k) {
-          return Point{face->vertex(k)->point().x(), face->vertex(k)->point().y(), 0};
-        };
-        sum += least_angle(corner(0), corner(1), corner(2));
-        ++count;
-      }
-      for (int k = 0; k < 3; ++k) {
-        const bool other = own != all_.is_constrained({face, k});
-        if (is_inside.emplace(face->neighbor(k), other).second)
-          waiting.push_back(face->neighbor(k));
-      }
+    for (const auto face : all_.finite_face_handles()) {
+      if (!face->is_in_domain()) continue;
+      const auto corner = [&](int k) {
+        return Point{face->vertex(k)->point().x(), face->vertex(k)->point().y(), 0};
+      };
+      sum += least_angle(corner(0), corner(1), corner(2));
+      ++count;
     }
     return sum / static_cast<double>(count);
   }
@@ -155,6 +156,66 @@ class Peer {
  private:
   Triangulation all_;
 };
+
+// libtess2, loaded when the program runs. It has single precision, and no verdict on the loops.
+class Tess {
+ public:
+  Tess() {
+    void* library = dlopen("libtess2-tulip-5.4.so", RTLD_NOW);
+    if (library == nullptr) return;
+    const auto load = [&](auto& function, const char* name) {
+      function =
+          reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+    };
+    load(make_, "tessNewTess");
+    load(add_, "tessAddContour");
+    load(run_, "tessTesselate");
+    load(count_, "tessGetElementCount");
+    load(free_, "tessDeleteTess");
+  }
+  bool is_there() const { return make_ != nullptr; }
+
+  int triangulate(const std::vector<std::vector<Point>>& loops) const {
+    void* tess = make_(nullptr);
+    std::vector<float> flat;
+    for (const auto& loop : loops) {
+      flat.clear();
+      for (const Point& p : loop) {
+        flat.push_back(static_cast<float>(p.x));
+        flat.push_back(static_cast<float>(p.y));
+      }
+      add_(tess, 2, flat.data(), 2 * sizeof(float), static_cast<int>(loop.size()));
+    }
+    constexpr int kOddWinding = 0;
+    constexpr int kPolygons = 0;
+    run_(tess, kOddWinding, kPolygons, 3, 2, nullptr);
+    const int made = count_(tess);
+    free_(tess);
+    return made;
+  }
+
+ private:
+  void* (*make_)(void*) = nullptr;
+  void (*add_)(void*, int, const void*, int, int) = nullptr;
+  int (*run_)(void*, int, int, int, int, const float*) = nullptr;
+  int (*count_)(void*) = nullptr;
+  void (*free_)(void*) = nullptr;
+};
+
+// The loops of a region, whose edges follow each other.
+std::vector<std::vector<Point>> loops_of(const Region& region) {
+  std::vector<std::vector<Point>> loops;
+  Index begin = kNone;
+  for (const auto& [from, to] : region.edges) {
+    if (begin == kNone) {
+      begin = from;
+      loops.emplace_back();
+    }
+    loops.back().push_back(region.points[from]);
+    if (to == begin) begin = kNone;
+  }
+  return loops;
+}
 
 void show_shapes() {
   std::printf(
@@ -200,28 +261,84 @@ void show_shapes() {
   }
 }
 
-void show_speed() {
-  std::printf("vertices  holes  million triangles a second: ours  CGAL  times\n");
+std::vector<Region> regions_for_speed(std::size_t count, std::size_t holes) {
   std::mt19937 random(2);
+  std::vector<Region> regions;
+  for (std::size_t i = 0; i < std::max<std::size_t>(4, 200'000 / count); ++i) {
+    regions.push_back(random_region(random, count, holes));
+  }
+  return regions;
+}
+
+void show_loops(std::size_t count, std::size_t holes) {
+  for (const Region& region : regions_for_speed(count, holes)) {
+    for (const auto& loop : loops_of(region)) {
+      for (const Point& p : loop) std::printf("%.17g %.17g ", p.x, p.y);
+      std::printf("\n");
+    }
+    std::printf("\n");
+  }
+}
+
+// Least seconds of five runs over all regions.
+double least_seconds_of(const std::function<void()>& work) {
+  double least = seconds_of(work);
+  for (int i = 0; i < 4; ++i) least = std::min(least, seconds_of(work));
+  return least;
+}
+
+// Seconds that facets of one ring of few vertices take; infinite for other regions.
+double seconds_of_few(const std::vector<std::vector<std::vector<Point>>>& regions) {
+  std::vector<std::vector<tessellate::FewVertices::PlanePoint>> rings;
+  for (const auto& loops : regions) {
+    if (loops.size() > 1 || loops[0].size() > tessellate::FewVertices::kMost) {
+      return std::numeric_limits<double>::infinity();
+    }
+    rings.emplace_back();
+    for (const Point& p : loops[0]) rings.back().push_back({p.x, p.y});
+  }
+  tessellate::FewVertices few;
+  return least_seconds_of([&] {
+    for (const auto& ring : rings) few.triangulate(ring);
+  });
+}
+
+void show_speed() {
+  std::printf(
+      "vertices  holes  million triangles a second, Delaunay: sweep and flips  few vertices  CGAL  "
+      "times  any: sweep  libtess2  times\n");
+  const Tess tess;
   for (const auto& [count, holes] :
        {std::pair<std::size_t, std::size_t>{8, 0}, {20, 0}, {100, 3}, {1'000, 8}, {10'000, 20}}) {
-    const std::size_t rounds = std::max<std::size_t>(4, 200'000 / count);
-    std::vector<Region> regions;
-    for (std::size_t i = 0; i < rounds; ++i) regions.push_back(random_region(random, count, holes));
+    const std::vector<Region> regions = regions_for_speed(count, holes);
+    std::vector<std::vector<std::vector<Point>>> loops;
+    std::transform(regions.begin(), regions.end(), std::back_inserter(loops), loops_of);
     std::size_t triangles = 0;
-    const double ours = seconds_of([&] {
+    const double any = least_seconds_of([&] {
+      triangles = 0;
+      for (const Region& region : regions) {
+        triangles += tessellate::sweep_region(region).triangles.size();
+      }
+    });
+    const double ours = least_seconds_of([&] {
       for (const Region& region : regions) {
         auto made = tessellate::sweep_region(region);
         tessellate::flip_to_delaunay(region.points, made.triangles);
-        triangles += made.triangles.size();
       }
     });
-    const double peer = seconds_of([&] {
+    const double few = seconds_of_few(loops);
+    const double cgal = least_seconds_of([&] {
       for (const Region& region : regions) Peer(region.points, region);
     });
+    int tessellated = 0;
+    const double libtess2 = !tess.is_there() ? 0 : least_seconds_of([&] {
+      tessellated = 0;
+      for (const auto& region : loops) tessellated += tess.triangulate(region);
+    });
     const double size = static_cast<double>(triangles) / 1e6;
-    std::printf("%8zu  %5zu  %32.2f  %4.2f  %5.1f\n", count, holes, size / ours, size / peer,
-                peer / ours);
+    std::printf("%8zu  %5zu  %53.2f  %12.2f  %4.2f  %5.1f  %10.2f  %8.2f  %5.1f\n", count, holes,
+                size / ours, size / few, size / cgal, cgal / std::min(ours, few), size / any,
+                tessellated / 1e6 / libtess2, libtess2 / any);
   }
 }
 
@@ -366,12 +483,14 @@ int main(int argc, char** argv) {
     show_shapes();
   } else if (mode == "speed") {
     show_speed();
+  } else if (mode == "loops" && argc > 3) {
+    show_loops(std::strtoull(argv[2], nullptr, 10), std::strtoull(argv[3], nullptr, 10));
   } else if (mode == "update") {
     show_updates();
   } else if (mode == "check" && argc > 2) {
     return check(std::strtoull(argv[2], nullptr, 10));
   } else {
-    std::printf("usage: regions shape | speed | update | check N\n");
+    std::printf("usage: regions shape | speed | loops N H | update | check N\n");
     return 2;
   }
   return 0;

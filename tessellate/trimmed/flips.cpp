@@ -31,24 +31,25 @@ bool is_delaunay(std::span<const Point> points, const std::array<Index, 4>& quad
 void restore_delaunay(std::span<const Point> points, std::span<Triangle> triangles,
                       std::span<std::uint32_t> twins, std::span<const std::uint32_t> edges) {
   WorkMemory memory;
-  std::pmr::vector<std::uint32_t> waiting(edges.begin(), edges.end(), memory.get());
+  std::pmr::vector<std::uint32_t> waiting(memory.get());
+  waiting.reserve(edges.size());
   std::pmr::vector<std::uint8_t> waits(twins.size(), 0, memory.get());
-  for (const std::uint32_t edge : waiting) waits[edge] = 1;
+  const auto wait_for = [&](std::uint32_t edge) {
+    if (twins[edge] == kNone || waits[edge] != 0 || waits[twins[edge]] != 0) return;
+    waiting.push_back(edge);
+    waits[edge] = 1;
+  };
+  for (const std::uint32_t edge : edges) wait_for(edge);
   const std::size_t most = kMostFlips * triangles.size();
   for (std::size_t flips = 0; !waiting.empty() && flips < most;) {
     const std::uint32_t edge = waiting.back();
     waiting.pop_back();
     waits[edge] = 0;
     const std::uint32_t twin = twins[edge];
-    if (twin == kNone) continue;
     if (is_delaunay(points, quadrangle_at(triangles, edge, twin))) continue;
     flip(triangles, twins, edge);
     ++flips;
-    for (const std::uint32_t side : {edge, next_edge(edge), twin, next_edge(twin)}) {
-      if (twins[side] == kNone || waits[side] != 0 || waits[twins[side]] != 0) continue;
-      waiting.push_back(side);
-      waits[side] = 1;
-    }
+    for (const std::uint32_t side : {edge, next_edge(edge), twin, next_edge(twin)}) wait_for(side);
   }
 }
 

@@ -9,45 +9,60 @@
 
 namespace watertight::tessellate {
 
-std::vector<std::uint32_t> twins_of(std::span<const Triangle> triangles, std::size_t point_count) {
+namespace {
+
+/// opposites_of() for edges that a function gives by their number.
+template <class EdgeAt>
+std::vector<std::uint32_t> pair_edges(std::uint32_t count, std::size_t point_count,
+                                      const EdgeAt& edge_at) {
   struct OpenEdge {
     std::uint32_t edge;
     Index from;
     Index to;
   };
   WorkMemory memory;
-  // The edges without a twin so far, by their smaller end: those of vertex i from first[i] on.
-  std::pmr::vector<std::uint32_t> first(point_count + 2, 0, memory.get());
-  for (const auto& [a, b, c] : triangles) {
-    ++first[std::min(a, b) + 2];
-    ++first[std::min(b, c) + 2];
-    ++first[std::min(c, a) + 2];
+  // The edges without an opposite one so far, by their smaller end: those of a point begin at
+  // first[point] and end before end[point], which grows.
+  std::pmr::vector<std::uint32_t> first(point_count + 1, 0, memory.get());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto [from, to] = edge_at(i);
+    ++first[std::min(from, to) + 1];
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
-  const std::span<std::uint32_t> end(first.begin() + 1, first.end());  // grows to the next first
-  std::pmr::vector<OpenEdge> open(3 * triangles.size(), memory.get());
-  std::pmr::vector<std::uint32_t> begin(first.begin() + 1, first.end(), memory.get());
-  std::vector<std::uint32_t> twins(3 * triangles.size(), kNone);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const Index from = triangles[t][k];
-      const Index to = triangles[t][k == 2 ? 0 : k + 1];
-      const Index low = std::min(from, to);
-      // The edges of one vertex are few, but for hubs of fans.
-      const auto here = std::span(open).subspan(begin[low], end[low] - begin[low]);
-      const auto other = std::find_if(here.begin(), here.end(), [&](const OpenEdge& edge) {
-        return edge.from == to && edge.to == from;
-      });
-      if (other == here.end()) {
-        open[end[low]++] = {3 * t + k, from, to};
-        continue;
-      }
-      twins[3 * t + k] = other->edge;
-      twins[other->edge] = 3 * t + k;
-      *other = open[--end[low]];
+  std::pmr::vector<std::uint32_t> end(first.begin(), first.end() - 1, memory.get());
+  std::pmr::vector<OpenEdge> open(count, memory.get());
+  std::vector<std::uint32_t> opposites(count, kNone);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto [from, to] = edge_at(i);
+    const Index low = std::min(from, to);
+    // The edges of one point are few, but for hubs of fans.
+    std::uint32_t at = first[low];
+    while (at < end[low] && (open[at].from != to || open[at].to != from)) ++at;
+    if (at == end[low]) {
+      open[end[low]++] = {i, from, to};
+      continue;
     }
+    opposites[i] = open[at].edge;
+    opposites[open[at].edge] = i;
+    open[at] = open[--end[low]];
   }
-  return twins;
+  return opposites;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> opposites_of(std::span<const PlaneEdge> edges, std::size_t point_count) {
+  return pair_edges(static_cast<std::uint32_t>(edges.size()), point_count,
+                    [&](std::uint32_t i) { return edges[i]; });
+}
+
+std::vector<std::uint32_t> twins_of(std::span<const Triangle> triangles, std::size_t point_count) {
+  return pair_edges(static_cast<std::uint32_t>(3 * triangles.size()), point_count,
+                    [&](std::uint32_t edge) {
+                      const std::uint32_t side = edge % 3;
+                      const Triangle& triangle = triangles[edge / 3];
+                      return PlaneEdge{triangle[side], triangle[side == 2 ? 0 : side + 1]};
+                    });
 }
 
 std::array<Index, 4> quadrangle_at(std::span<const Triangle> triangles, std::uint32_t edge,

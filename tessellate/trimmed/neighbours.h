@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/point.h"
+#include "tessellate/trimmed/region.h"
 
 namespace watertight::tessellate {
 
@@ -23,6 +24,10 @@ inline Index& start_of(std::span<Triangle> triangles, std::uint32_t edge) {
 inline Index start_of(std::span<const Triangle> triangles, std::uint32_t edge) {
   return triangles[edge / 3][edge % 3];
 }
+
+/// For each edge the number of the one between the same points in the other direction, or kNone.
+/// Cost: linear.
+std::vector<std::uint32_t> opposites_of(std::span<const PlaneEdge> edges, std::size_t point_count);
 
 /// For each edge the edge of the other triangle, or kNone. Cost: linear.
 std::vector<std::uint32_t> twins_of(std::span<const Triangle> triangles, std::size_t point_count);
@@ -39,7 +44,7 @@ void flip(std::span<Triangle> triangles, std::span<std::uint32_t> twins, std::ui
 /// left, is Delaunay (flip_to_delaunay).
 bool is_delaunay(std::span<const Point> points, const std::array<Index, 4>& quadrangle);
 
-/// flip_to_delaunay() where only the given edges, each once, may not be Delaunay.
+/// flip_to_delaunay() where only the given edges may not be Delaunay.
 void restore_delaunay(std::span<const Point> points, std::span<Triangle> triangles,
                       std::span<std::uint32_t> twins, std::span<const std::uint32_t> edges);
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "base/assert.h"
@@ -11,13 +13,6 @@
 
 namespace watertight::tessellate {
 namespace {
-
-/// Two ends of an edge, the smaller first, and where the edge is.
-struct KeyedEdge {
-  Index low;
-  Index high;
-  std::uint32_t edge;
-};
 
 /// Whether a point lies in a triangle or on its sides. Requires a left turn.
 bool is_in(const std::array<Point, 3>& corners, const Point& p) {
@@ -32,6 +27,36 @@ std::pair<std::size_t, std::size_t> lines_between(const std::vector<double>& lin
   const auto last = std::upper_bound(first, lines.end(), high);
   return {static_cast<std::size_t>(first - lines.begin()),
           static_cast<std::size_t>(last - lines.begin())};
+}
+
+struct PlaneBox {
+  Point low;
+  Point high;
+};
+
+PlaneBox box_of(const std::array<Point, 3>& corners) {
+  const auto [left, right] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
+  const auto [below, above] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
+  return {{left, below, 0}, {right, above, 0}};
+}
+
+/// For each point the sides of a box beyond which it lies, as bits: the outcodes of D. Cohen and
+/// I. Sutherland.
+std::vector<std::uint8_t> outcodes_of(std::span<const Point> points, const PlaneBox& box) {
+  std::vector<std::uint8_t> codes(points.size());
+  std::transform(points.begin(), points.end(), codes.begin(), [&](const Point& p) {
+    const unsigned left = p.x < box.low.x ? 1U : 0U;
+    const unsigned right = p.x > box.high.x ? 2U : 0U;
+    const unsigned below = p.y < box.low.y ? 4U : 0U;
+    const unsigned above = p.y > box.high.y ? 8U : 0U;
+    return static_cast<std::uint8_t>(left | right | below | above);
+  });
+  return codes;
+}
+
+/// Whether a triangle lies beyond one side of the box of the outcodes.
+bool is_beyond_a_side(const Triangle& triangle, std::span<const std::uint8_t> outcodes) {
+  return (outcodes[triangle[0]] & outcodes[triangle[1]] & outcodes[triangle[2]]) != 0;
 }
 
 bool has(const std::vector<PlaneEdge>& edges, const PlaneEdge& edge) {
@@ -104,7 +129,10 @@ std::optional<RegionConflict> TrimmedMesh::change_loop(Change change, Index befo
   const int side = turn(points_[before], points_[middle], points_[after]);
   if (side < 0) std::swap(place[1], place[2]);
   // Every edge of a loop is a side of a triangle: each loop that the change may meet is in the gap.
+  const auto outcodes =
+      outcodes_of(points_, box_of({points_[place[0]], points_[place[1]], points_[place[2]]}));
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    if (is_beyond_a_side(triangles_[t], outcodes)) continue;
     if (may_meet(triangles_[t], place)) change.triangles.push_back(t);
   }
   if (side != 0 && is_gained) add_grid_points(place, change);
@@ -115,13 +143,8 @@ std::optional<RegionConflict> TrimmedMesh::change_loop(Change change, Index befo
   return conflict;
 }
 
+/// False if the place lies beyond a side of the triangle.
 bool TrimmedMesh::may_meet(const Triangle& triangle, const std::array<Index, 3>& place) const {
-  for (const int axis : {0, 1}) {
-    const auto of = [&](Index point) { return points_[point][axis]; };
-    const auto [low, high] = std::minmax({of(triangle[0]), of(triangle[1]), of(triangle[2])});
-    const auto [from, to] = std::minmax({of(place[0]), of(place[1]), of(place[2])});
-    if (low > to || high < from) return false;
-  }
   for (std::size_t k = 0; k < 3; ++k) {
     const Point& a = points_[triangle[k]];
     const Point& b = points_[triangle[(k + 1) % 3]];
@@ -135,10 +158,9 @@ bool TrimmedMesh::may_meet(const Triangle& triangle, const std::array<Index, 3>&
 /// The grid points of a triangle that the region gains, but for those on its new border.
 void TrimmedMesh::add_grid_points(const std::array<Index, 3>& place, Change& change) {
   const std::array<Point, 3> corners{points_[place[0]], points_[place[1]], points_[place[2]]};
-  const auto [left, right] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
-  const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
-  const auto [first_u, last_u] = lines_between(grid_.us, left, right);
-  const auto [first_v, last_v] = lines_between(grid_.vs, low, high);
+  const PlaneBox box = box_of(corners);
+  const auto [first_u, last_u] = lines_between(grid_.us, box.low.x, box.high.x);
+  const auto [first_v, last_v] = lines_between(grid_.vs, box.low.y, box.high.y);
   for (std::size_t k = first_v; k < last_v; ++k) {
     for (std::size_t j = first_u; j < last_u; ++j) {
       const Point p{grid_.us[j], grid_.vs[k], 0};
@@ -170,7 +192,12 @@ bool TrimmedMesh::add_grid_line(std::size_t axis, double at) {
   own.insert(place, at);
   Change change;
   std::vector<Index> point_of_line(lines(1 - axis).size(), kNone);
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  const PlaneBox line =
+      axis == 0 ? PlaneBox{{at, -kFar, 0}, {at, kFar, 0}} : PlaneBox{{-kFar, at, 0}, {kFar, at, 0}};
+  const auto outcodes = outcodes_of(points_, line);
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    if (is_beyond_a_side(triangles_[t], outcodes)) continue;
     add_line_points(axis, at, t, point_of_line, change);
   }
   const auto conflict = apply(change);
@@ -182,13 +209,10 @@ bool TrimmedMesh::add_grid_line(std::size_t axis, double at) {
 /// The points of a new line in a triangle, or on its sides inside the loops.
 void TrimmedMesh::add_line_points(std::size_t axis, double at, std::uint32_t triangle,
                                   std::vector<Index>& point_of_line, Change& change) {
-  const int along = static_cast<int>(axis);
+  const int across = static_cast<int>(1 - axis);
   const Triangle& t = triangles_[triangle];
   const std::array<Point, 3> corners{points_[t[0]], points_[t[1]], points_[t[2]]};
-  const auto [low, high] = std::minmax({corners[0][along], corners[1][along], corners[2][along]});
-  if (at < low || at > high) return;
-  const auto [from, to] =
-      std::minmax({corners[0][1 - along], corners[1][1 - along], corners[2][1 - along]});
+  const auto [from, to] = std::minmax({corners[0][across], corners[1][across], corners[2][across]});
   const std::vector<double>& others = lines(1 - axis);
   const auto [first, last] = lines_between(others, from, to);
   for (std::size_t k = first; k < last; ++k) {
@@ -233,38 +257,35 @@ bool TrimmedMesh::remove_grid_line(std::size_t axis, double at) {
 /// Deletes triangles, sweeps the gap and flips edges from there; on conflict nothing changes.
 std::optional<RegionConflict> TrimmedMesh::apply(const Change& change) {
   if (change.triangles.empty() && change.new_border.empty()) return std::nullopt;
-  std::vector<Index> points;
-  std::vector<std::uint32_t> rim;
-  RegionTriangles swept = sweep_region(gap_of(change, points, rim));
+  const Gap gap = gap_of(change);
+  RegionTriangles swept = sweep_region(gap.region);
   if (swept.conflict) {
     for (PlaneEdge* edge : {&swept.conflict->first, &swept.conflict->second}) {
-      for (Index& end : *edge) end = end == kNone ? kNone : points[end];
+      for (Index& end : *edge) end = end == kNone ? kNone : gap.points[end];
     }
     return swept.conflict;
   }
-  for (Triangle& triangle : swept.triangles) {
-    for (Index& corner : triangle) corner = points[corner];
-  }
-  splice(change, swept.triangles, rim);
+  splice(change, gap, swept.triangles);
   for (const Index point : change.going) free_point(point);
   return std::nullopt;
 }
 
-/// The region of the triangles that go, with the new border. `points` are the numbers of its
-/// points, and `rim` the edges of other triangles around it.
-Region TrimmedMesh::gap_of(const Change& change, std::vector<Index>& points,
-                           std::vector<std::uint32_t>& rim) const {
-  Region gap;
+TrimmedMesh::Gap TrimmedMesh::gap_of(const Change& change) const {
+  Gap gap;
   std::vector<Index> number(points_.size(), kNone);
   std::vector<bool> goes(points_.size(), false);
   for (const Index point : change.going) goes[point] = true;
   const auto number_of = [&](Index point) {
     if (number[point] == kNone) {
-      number[point] = static_cast<Index>(points.size());
-      points.push_back(point);
-      gap.points.push_back(points_[point]);
+      number[point] = static_cast<Index>(gap.points.size());
+      gap.points.push_back(point);
+      gap.region.points.push_back(points_[point]);
     }
     return number[point];
+  };
+  const auto add_edge = [&](Index from, Index to, std::uint32_t beyond) {
+    gap.region.edges.push_back({number_of(from), number_of(to)});
+    gap.rim.push_back(beyond);
   };
   std::vector<bool> is_going(triangles_.size(), false);
   for (const std::uint32_t t : change.triangles) is_going[t] = true;
@@ -275,53 +296,46 @@ Region TrimmedMesh::gap_of(const Change& change, std::vector<Index>& points,
       if (!goes[from]) number_of(from);
       const std::uint32_t twin = twins_[edge];
       if (twin == kNone ? has(change.old_border, {from, to}) : is_going[twin / 3]) continue;
-      gap.edges.push_back({number_of(from), number_of(to)});
-      if (twin != kNone) rim.push_back(twin);
+      add_edge(from, to, twin);
     }
   }
   for (const Index point : change.coming) number_of(point);
-  for (const auto& [from, to] : change.new_border) {
-    gap.edges.push_back({number_of(from), number_of(to)});
-  }
+  for (const auto& [from, to] : change.new_border) add_edge(from, to, kNone);
   return gap;
 }
 
-/// Puts triangles in the place of those that go.
-void TrimmedMesh::splice(const Change& change, std::span<const Triangle> triangles,
-                         const std::vector<std::uint32_t>& rim) {
-  std::vector<KeyedEdge> edges;
-  const auto add_edge = [&](std::uint32_t edge) {
-    const Index from = triangles_[edge / 3][edge % 3];
-    const Index to = triangles_[edge / 3][next_edge(edge) % 3];
-    edges.push_back({std::min(from, to), std::max(from, to), edge});
-  };
+/// Puts the triangles of a gap in the place of those that go.
+void TrimmedMesh::splice(const Change& change, const Gap& gap,
+                         std::span<const Triangle> triangles) {
   const std::size_t kept = triangles_.size();
-  std::vector<std::uint32_t> waiting;
+  const auto slot_of = [&](std::size_t i) {
+    return i < change.triangles.size()
+               ? change.triangles[i]
+               : static_cast<std::uint32_t>(kept + i - change.triangles.size());
+  };
+  if (triangles.size() > change.triangles.size()) {
+    triangles_.resize(kept + triangles.size() - change.triangles.size());
+    twins_.resize(3 * triangles_.size(), kNone);
+  }
+  // The edges of the new triangles, and those of the triangles beyond the gap.
+  std::vector<PlaneEdge> edges;
+  std::vector<std::uint32_t> places;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const auto slot = i < change.triangles.size()
-                          ? change.triangles[i]
-                          : static_cast<std::uint32_t>(kept + i - change.triangles.size());
-    if (slot == triangles_.size()) {
-      triangles_.emplace_back();
-      twins_.resize(3 * triangles_.size(), kNone);
-    }
-    triangles_[slot] = triangles[i];
-    for (std::uint32_t edge = 3 * slot; edge < 3 * slot + 3; ++edge) {
-      twins_[edge] = kNone;
-      add_edge(edge);
-      waiting.push_back(edge);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      edges.push_back({triangles[i][k], triangles[i][(k + 1) % 3]});
+      places.push_back(3 * slot_of(i) + k);
+      triangles_[slot_of(i)][k] = gap.points[triangles[i][k]];
     }
   }
-  for (const std::uint32_t edge : rim) add_edge(edge);
-  std::sort(edges.begin(), edges.end(), [](const KeyedEdge& a, const KeyedEdge& b) {
-    return std::pair(a.low, a.high) < std::pair(b.low, b.high);
-  });
-  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    const auto& [low, high, edge] = edges[i];
-    const KeyedEdge& other = edges[i + 1];
-    if (low != other.low || high != other.high) continue;
-    twins_[edge] = other.edge;
-    twins_[other.edge] = edge;
+  const std::size_t inside = edges.size();
+  for (std::size_t i = 0; i < gap.rim.size(); ++i) {
+    if (gap.rim[i] == kNone) continue;
+    edges.push_back({gap.region.edges[i][1], gap.region.edges[i][0]});
+    places.push_back(gap.rim[i]);
+  }
+  const auto opposites = opposites_of(edges, gap.points.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    twins_[places[i]] = opposites[i] == kNone ? kNone : places[opposites[i]];
   }
   for (std::size_t i = change.triangles.size(); i > triangles.size(); --i) {
     const auto last = static_cast<std::uint32_t>(triangles_.size() - 1);
@@ -329,7 +343,7 @@ void TrimmedMesh::splice(const Change& change, std::span<const Triangle> triangl
     triangles_.pop_back();
     twins_.resize(3 * triangles_.size());
   }
-  restore_delaunay(points_, triangles_, twins_, waiting);
+  restore_delaunay(points_, triangles_, twins_, std::span(places).first(inside));
 }
 
 void TrimmedMesh::move_triangle(std::uint32_t from, std::uint32_t to) {

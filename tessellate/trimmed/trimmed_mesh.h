@@ -71,11 +71,17 @@ class TrimmedMesh {
   void add_line_points(std::size_t axis, double at, std::uint32_t triangle,
                        std::vector<Index>& point_of_line, Change& change);
 
+  // The region of the triangles that go, with points of its own.
+  struct Gap {
+    Region region;
+    std::vector<Index> points;  // their numbers in the mesh
+    std::vector<std::uint32_t>
+        rim;  // region edge -> edge of the triangle beyond; kNone for borders
+  };
+
   std::optional<RegionConflict> apply(const Change& change);
-  Region gap_of(const Change& change, std::vector<Index>& points,
-                std::vector<std::uint32_t>& rim) const;
-  void splice(const Change& change, std::span<const Triangle> triangles,
-              const std::vector<std::uint32_t>& rim);
+  Gap gap_of(const Change& change) const;
+  void splice(const Change& change, const Gap& gap, std::span<const Triangle> triangles);
   void move_triangle(std::uint32_t from, std::uint32_t to);
 
   PlaneGrid grid_;

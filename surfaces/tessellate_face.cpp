@@ -237,7 +237,8 @@ class FaceMesh {
     const std::size_t before = inner_.size();
     for (const Triangle& triangle : mesh.triangles) {
       split_shared_sides(mesh, triangle);
-      if (!may_be_far(mesh, triangle) || measured(mesh, triangle) <= kFarEnough * chord_) continue;
+      const double far = kFarEnough * chord_;
+      if (!may_be_far(mesh, triangle) || measured(mesh, triangle, far) <= far) continue;
       const Point wanted = divided_at(mesh, triangle);
       if (!is_beside_border(wanted)) inner_.push_back(wanted);
     }
@@ -368,8 +369,9 @@ class FaceMesh {
   }
 
   /// The bound allows for more than surfaces do: the largest distance of points spread over a
-  /// triangle from the surface.
-  double measured(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle) const {
+  /// triangle from the surface, or one that is more than enough.
+  double measured(const tessellate::TrimmedTriangles& mesh, const Triangle& triangle,
+                  double enough) const {
     double most = 0;
     std::array<Parameters, 3> at;
     std::array<Vector3, 3> corners;
@@ -379,6 +381,8 @@ class FaceMesh {
     }
     for (std::size_t i = 0; i <= kMeasured; ++i) {
       for (std::size_t j = 0; i + j <= kMeasured; ++j) {
+        const bool is_corner = i == kMeasured || j == kMeasured || i + j == 0;
+        if (is_corner) continue;
         const std::array<double, 3> weights{
             static_cast<double>(i) / static_cast<double>(kMeasured),
             static_cast<double>(j) / static_cast<double>(kMeasured),
@@ -390,6 +394,7 @@ class FaceMesh {
           flat = flat + corners[k] * weights[k];
         }
         most = std::max(most, distance_from(place, flat));
+        if (most > enough) return most;
       }
     }
     return most;
@@ -420,7 +425,7 @@ class FaceMesh {
       if (is_collapsed) continue;
       result_.triangles.push_back(triangle);
       measure_error(mesh, t);
-      if (may_be_far(mesh, t) && measured(mesh, t) > chord_) add_coarse_edges(mesh, t);
+      if (may_be_far(mesh, t) && measured(mesh, t, chord_) > chord_) add_coarse_edges(mesh, t);
     }
     std::sort(result_.coarse.begin(), result_.coarse.end());
     result_.coarse.erase(std::unique(result_.coarse.begin(), result_.coarse.end()),
@@ -442,7 +447,7 @@ class FaceMesh {
     const Vector3 offset = point_at(surface_, centre).place - corners[0];
     double error = std::abs(dot(offset, normal)) / size;
     // In a long triangle the point of the surface is not the nearest one.
-    if (error > chord_) error = measured(mesh, t);
+    if (error > chord_) error = measured(mesh, t, std::numeric_limits<double>::infinity());
     result_.chord_error = std::max(result_.chord_error, error);
   }
 

@@ -2,16 +2,14 @@
 #include "surfaces/curves/bezier.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory_resource>
 #include <utility>
 
 namespace watertight::surfaces {
 
 WeightedPoint weighted(const Vector3& place, double weight) { return {place * weight, weight}; }
-
-WeightedPoint between(const WeightedPoint& a, const WeightedPoint& b, double t) {
-  return {a.moment + (b.moment - a.moment) * t, a.weight + (b.weight - a.weight) * t};
-}
 
 namespace {
 
@@ -58,7 +56,9 @@ struct Largest {
 }  // namespace
 
 CurvePoint point_at(const BezierCurve& curve, double t) {
-  std::vector<WeightedPoint> points = curve.points;
+  std::array<std::byte, 1024> block;
+  std::pmr::monotonic_buffer_resource memory(block.data(), block.size());
+  std::pmr::vector<WeightedPoint> points(curve.points.begin(), curve.points.end(), &memory);
   std::size_t count = points.size();
   if (count == 1) return {points[0].place(), {}};
   for (; count > 2; --count) {
@@ -101,9 +101,11 @@ SurfacePoint point_at(const BezierPatch& patch, double u, double v) {
   const std::size_t columns = patch.columns;
   const std::size_t rows = patch.rows();
   // Along u first: for each row the value and its change.
-  std::vector<WeightedPoint> values(rows);
-  std::vector<WeightedPoint> changes(rows);
-  std::vector<WeightedPoint> work(columns);
+  std::array<std::byte, 2048> block;
+  std::pmr::monotonic_buffer_resource memory(block.data(), block.size());
+  std::pmr::vector<WeightedPoint> values(rows, &memory);
+  std::pmr::vector<WeightedPoint> changes(rows, &memory);
+  std::pmr::vector<WeightedPoint> work(columns, &memory);
   for (std::size_t k = 0; k < rows; ++k) {
     std::copy_n(patch.points.begin() + static_cast<std::ptrdiff_t>(k * columns), columns,
                 work.begin());

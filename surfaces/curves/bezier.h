@@ -30,7 +30,9 @@ struct WeightedPoint {
 };
 WeightedPoint weighted(const Vector3& place, double weight);
 /// a + t (b - a).
-WeightedPoint between(const WeightedPoint& a, const WeightedPoint& b, double t);
+inline WeightedPoint between(const WeightedPoint& a, const WeightedPoint& b, double t) {
+  return {a.moment + (b.moment - a.moment) * t, a.weight + (b.weight - a.weight) * t};
+}
 
 /// A curve over [0, 1]. Requires a control point and positive weights.
 struct BezierCurve {

@@ -49,8 +49,10 @@ Result<PlainEntity> EntityReader::entity(std::uint64_t id) const {
   StepEntity& only = instance->entities.front();
   const bool is_step = !only.type.starts_with("IFC");
   PlainEntity plain{id, instance->offset, plain_type(only.type), std::move(only.values), is_step};
-  // Items of representations have a name in STEP, as their first value.
-  if (is_step && !plain.values.empty() && plain.values[0].kind == StepValue::Kind::text) {
+  // Items of representations have a name in STEP, as their first value; some programs omit it.
+  if (is_step && !plain.values.empty() &&
+      (plain.values[0].kind == StepValue::Kind::text ||
+       plain.values[0].kind == StepValue::Kind::omitted)) {
     plain.values.erase(plain.values.begin());
   }
   return plain;

@@ -28,18 +28,6 @@ using surfaces::operator*;
 constexpr std::uint32_t kDeepestItem =
     64;  // placements in placements, mapped items in mapped items
 
-Affine affine_of(const Frame& frame) { return {{frame.x, frame.y, frame.z}, frame.origin}; }
-
-/// The inverse of a frame's affine map.
-Affine inverse_of(const Frame& frame) {
-  Affine inverse;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    inverse.columns[axis] = {frame.x[axis], frame.y[axis], frame.z[axis]};
-  }
-  inverse.shift = moved(inverse, frame.origin) * -1.0;
-  return inverse;
-}
-
 class IfcReader {
  public:
   IfcReader(const Part21& file, std::size_t bytes, const ReadOptions& options)
@@ -233,7 +221,8 @@ class IfcReader {
     if (!target) return target.error();
     const auto inner = reader_.reference(*map, 1);
     if (!inner) return inner.error();
-    const Affine own = composed(composed(placement, *target), inverse_of(*origin));
+    const Affine own =
+        composed(composed(placement, *target), inverse_of_motion(affine_of(*origin)));
     return representation(*inner, own, false, depth + 1, feature);
   }
 

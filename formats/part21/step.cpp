@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// STEP files: every solid is a feature. Source: ISO 10303-42 (geometry and topology), 10303-43
-// (representations and their contexts).
+// STEP files: every solid is a feature, once for each place of its part. Source: ISO 10303-42
+// (geometry and topology), 10303-43 (representations and their contexts).
 #include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "formats/curved/curved_files.h"
+#include "formats/part21/assemblies.h"
 #include "formats/part21/boundary_reader.h"
 #include "formats/part21/solid_instance.h"
 #include "formats/part21/units.h"
@@ -18,27 +19,32 @@ namespace {
 class StepReader {
  public:
   StepReader(const Part21& file, std::size_t bytes, const ReadOptions& options)
-      : reader_(file), options_(options), budget_(options.limits.claimed_by(bytes)) {}
+      : reader_(file),
+        options_(options),
+        most_solids_(options.limits.solids_of(bytes)),
+        budget_(options.limits.claimed_by(bytes)) {}
 
   Result<Document> read() {
     document_.format = Format::step;
     if (Status status = find_contexts(); !status) return status.error();
-    bool has_placements = false;
+    const auto assemblies =
+        Assemblies::read(reader_, [&](std::uint64_t representation) -> Result<double> {
+          const auto units = units_of(representation);
+          if (!units) return units.error();
+          return units->metre;
+        });
+    if (!assemblies) return assemblies.error();
+    document_.notes = assemblies->notes();
     for (const StepPlace& place : reader_.file().places()) {
-      has_placements = has_placements || place.type == "ITEM_DEFINED_TRANSFORMATION";
       if (!is_solid_type(plain_type(place.type))) continue;
-      if (Status status = add_solid(place); !status) return status.error();
+      if (Status status = add_solids(place, *assemblies); !status) return status.error();
     }
     if (document_.features.empty()) document_.notes.push_back("the file has no solid");
-    if (has_placements) {
-      document_.notes.push_back(
-          "placements of parts in assemblies are not applied: each part is where it was drawn");
-    }
     return std::move(document_);
   }
 
  private:
-  /// Finds the context of each representation, and so the units of its items.
+  /// Finds the representation of each item, and the context of each representation with its units.
   Status find_contexts() {
     for (const StepPlace& place : reader_.file().places()) {
       if (!place.type.ends_with("SHAPE_REPRESENTATION")) continue;
@@ -47,13 +53,14 @@ class StepReader {
       const auto items = reader_.references(*found, 0);
       const auto context = reader_.reference(*found, 1);
       if (!items || !context) continue;
-      for (const std::uint64_t item : *items) context_of_.emplace(item, *context);
+      context_of_.emplace(place.id, *context);
+      for (const std::uint64_t item : *items) representation_of_.emplace(item, place.id);
     }
     return Done{};
   }
 
-  Result<FileUnits> units_of(std::uint64_t solid) {
-    const auto context = context_of_.find(solid);
+  Result<FileUnits> units_of(std::uint64_t representation) {
+    const auto context = context_of_.find(representation);
     if (context == context_of_.end()) return FileUnits{0.001, 1, {}};
     if (const auto known = units_.find(context->second); known != units_.end()) {
       return known->second;
@@ -87,25 +94,41 @@ class StepReader {
     if (metre) units.uncertainty = *value * *metre;
   }
 
-  Status add_solid(const StepPlace& place) {
-    const auto units = units_of(place.id);
+  /// Adds a feature for each place of a solid.
+  Status add_solids(const StepPlace& place, const Assemblies& assemblies) {
+    const auto own = representation_of_.find(place.id);
+    const std::uint64_t representation = own == representation_of_.end() ? 0 : own->second;
+    const auto units = units_of(representation);
     if (!units) return units.error();
-    const std::string id = instance_name(place.id);
-    Feature& feature = document_.features.emplace_back();
-    feature.id = id;
+    const auto places = assemblies.places_of(representation, solids_, most_solids_);
+    if (!places) return places.error();
     const double metre = units->metre;
-    const surfaces::Affine placement{{{{metre, 0, 0}, {0, metre, 0}, {0, 0, metre}}}, {}};
-    return add_solid_instance(
-        reader_.file(), {place.id, units->radian, units->uncertainty},
-        {placement, 0, SolidSource{id, std::string(place.type), "", 0, 0, ""}}, options_, budget_,
-        document_, feature);
+    const surfaces::Affine to_metres{{{{metre, 0, 0}, {0, metre, 0}, {0, 0, metre}}}, {}};
+    for (const PartPlace& part : *places) {
+      std::string id = instance_name(place.id);
+      if (places->size() > 1) {
+        for (const std::uint64_t usage : part.usages) id += "@" + instance_name(usage);
+      }
+      Feature& feature = document_.features.emplace_back();
+      feature.id = id;
+      const surfaces::Affine placement = surfaces::composed(part.to_whole, to_metres);
+      Status status =
+          add_solid_instance(reader_.file(), {place.id, units->radian, units->uncertainty},
+                             {placement, 0, SolidSource{id, std::string(place.type), "", 0, 0, ""}},
+                             options_, budget_, document_, feature);
+      if (!status) return status;
+    }
+    return Done{};
   }
 
   EntityReader reader_;
   const ReadOptions& options_;
-  std::uint64_t budget_;                               // add_curved_solid()
-  std::map<std::uint64_t, std::uint64_t> context_of_;  // item of a representation -> its context
-  std::map<std::uint64_t, FileUnits> units_;           // context -> units
+  std::uint64_t most_solids_;
+  std::uint64_t solids_ = 0;
+  std::uint64_t budget_;                                      // add_curved_solid()
+  std::map<std::uint64_t, std::uint64_t> representation_of_;  // item -> its representation
+  std::map<std::uint64_t, std::uint64_t> context_of_;         // representation -> its context
+  std::map<std::uint64_t, FileUnits> units_;                  // context -> units
   Document document_;
 };
 

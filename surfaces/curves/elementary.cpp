@@ -46,6 +46,8 @@ Frame frame_of(const Vector3& origin, const Vector3& axis, const Vector3& refere
   return frame;
 }
 
+Affine affine_of(const Frame& frame) { return {{frame.x, frame.y, frame.z}, frame.origin}; }
+
 Curve polyline(const std::vector<Vector3>& points) {
   std::vector<BezierCurve> pieces;
   for (std::size_t i = 1; i < points.size(); ++i) {

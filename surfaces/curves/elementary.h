@@ -21,6 +21,8 @@ struct Frame {
 /// The frame with this axis z; x is the part of `reference` across it, or of another vector if
 /// they are parallel.
 Frame frame_of(const Vector3& origin, const Vector3& axis, const Vector3& reference);
+/// The map from coordinates in a frame to those around it.
+Affine affine_of(const Frame& frame);
 
 /// Lines through all points in turn. Requires two points.
 Curve polyline(const std::vector<Vector3>& points);

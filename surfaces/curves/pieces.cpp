@@ -233,6 +233,15 @@ Affine composed(const Affine& outer, const Affine& inner) {
   return result;
 }
 
+Affine inverse_of_motion(const Affine& motion) {
+  Affine inverse;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < 3; ++i) inverse.columns[axis][i] = motion.columns[i][axis];
+  }
+  inverse.shift = moved(inverse, motion.shift) * -1.0;
+  return inverse;
+}
+
 bool is_mirror(const Affine& affine) {
   return dot(cross(affine.columns[0], affine.columns[1]), affine.columns[2]) < 0;
 }

@@ -79,6 +79,8 @@ struct Affine {
 Vector3 moved(const Affine& affine, const Vector3& place);
 /// First `inner`, then `outer`.
 Affine composed(const Affine& outer, const Affine& inner);
+/// The inverse of a map whose columns are unit vectors across each other.
+Affine inverse_of_motion(const Affine& motion);
 bool is_mirror(const Affine& affine);
 void move(const Affine& affine, Curve& curve);
 void move(const Affine& affine, Surface& surface);

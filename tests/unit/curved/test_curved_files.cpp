@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "curved_texts.h"
 #include "formats/document.h"
@@ -61,6 +64,96 @@ TEST_CASE("STEP: a cylinder in millimetres is a valid solid in metres") {
   REQUIRE(fine);
   const auto finer = measures_of(fine->features[0].solids[0]);
   CHECK(std::abs(finer.volume - 0.04 * kPi) < 1e-5 * 0.48 * kPi);
+}
+
+TEST_CASE("STEP: names may be omitted") {
+  std::string text = test::step_cylinder();
+  const std::string named = "('',";
+  for (auto at = text.find("DATA;"); (at = text.find(named, at)) != std::string::npos; ++at) {
+    if (text[at - 1] != 'T' || text.compare(at - 7, 7, "CONTEXT") != 0) {
+      text.replace(at, named.size(), "($,");
+    }
+  }
+  REQUIRE(text.find("CARTESIAN_POINT($,") != std::string::npos);
+  const auto document = read(text);
+  REQUIRE(document);
+  REQUIRE(document->features.size() == 1);
+  REQUIRE(document->features[0].solids.size() == 1);
+  CHECK(document->features[0].solids[0].tessellation->left_out.empty());
+  const auto measures = measures_of(document->features[0].solids[0]);
+  CHECK(std::abs(measures.volume - 0.04 * kPi) < 0.001 * 0.48 * kPi);
+}
+
+TEST_CASE("STEP: a part of an assembly is a feature for each of its places") {
+  const auto document = read(test::step_assembly());
+  REQUIRE(document);
+  CHECK(document->notes.empty());
+  struct Expected {
+    std::string id;
+    std::array<double, 3> low;
+    std::array<double, 3> high;
+  };
+  const std::vector<Expected> expected{
+      {"#2@#90@#94", {10.8, -0.2, 0}, {11.2, 0.2, 1}},
+      {"#2@#90@#96", {-0.2, 0.8, 20}, {0.2, 1.2, 21}},
+      {"#2@#92@#94", {10, 1.8, -0.2}, {11, 2.2, 0.2}},
+      {"#2@#92@#96", {-2.2, 0, 19.8}, {-1.8, 1, 20.2}},
+      {"#2@#101", {-5.2, -0.2, 0}, {-4.8, 0.2, 1}},
+  };
+  REQUIRE(document->features.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CAPTURE(expected[i].id);
+    const formats::Feature& feature = document->features[i];
+    CHECK(feature.id == expected[i].id);
+    REQUIRE(feature.solids.size() == 1);
+    CHECK(feature.solids[0].source.object_id == expected[i].id);
+    const auto measures = measures_of(feature.solids[0]);
+    CHECK(std::abs(measures.volume - 0.04 * kPi) < 0.001 * 0.48 * kPi);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      CHECK(std::abs(measures.box_min[axis] - expected[i].low[axis]) <= 0.001);
+      CHECK(std::abs(measures.box_max[axis] - expected[i].high[axis]) <= 0.001);
+    }
+  }
+}
+
+TEST_CASE("STEP: placements that cannot be read leave a part where it was drawn, with a note") {
+  const auto document =
+      read(test::replaced(test::step_assembly(), "#91=ITEM_DEFINED_TRANSFORMATION('','',#80,#81);",
+                          "#91=ITEM_DEFINED_TRANSFORMATION('','',#80,#110);"));
+  REQUIRE(document);
+  CHECK(document->features.size() == 5);
+  REQUIRE(document->notes.size() == 1);
+  CHECK(document->notes[0] ==
+        "the placement #90 of a part is not applied: #110 (CARTESIANPOINT): a placement should "
+        "stand here");
+}
+
+TEST_CASE("STEP: assemblies that contain themselves are malformed") {
+  const auto document = read(test::replaced(test::step_assembly(), "'',#72,#73)", "'',#72,#70)"));
+  REQUIRE_FALSE(document);
+  CHECK(document.error().code == ErrorCode::malformed);
+  CHECK(document.error().message.find("assemblies in assemblies without end") != std::string::npos);
+}
+
+TEST_CASE("STEP: parts that are repeated without measure meet the limit") {
+  std::string text = test::step_assembly();
+  // Each of 40 more wholes has the one before twice.
+  std::string more = "#301=SHAPE_REPRESENTATION('',(#83,#84),#64);\n";
+  for (int i = 0; i < 40; ++i) {
+    const std::string whole = std::to_string(301 + i);
+    const std::string part = i == 0 ? "73" : std::to_string(300 + i);
+    if (i > 0) more += "#" + whole + "=SHAPE_REPRESENTATION('',(#83),#64);\n";
+    for (const int copy : {1, 2}) {
+      more += "#" + std::to_string(400 + 2 * i + copy) + "=(REPRESENTATION_RELATIONSHIP('','',#" +
+              part + ",#" + whole +
+              ") REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#95) "
+              "SHAPE_REPRESENTATION_RELATIONSHIP());\n";
+    }
+  }
+  text = test::replaced(text, "ENDSEC;\nEND-ISO", more + "ENDSEC;\nEND-ISO");
+  const auto document = read(text);
+  REQUIRE_FALSE(document);
+  CHECK(document.error().code == ErrorCode::limit_exceeded);
 }
 
 TEST_CASE("IFC: a product is a feature where its placements put it, other bodies are counted") {

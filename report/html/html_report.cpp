@@ -3,6 +3,7 @@
 
 #include "geometry/measures.h"
 #include "report/feature_report.h"
+#include "report/html/curved_rows.h"
 #include "report/html/footprints.h"
 #include "report/html/html_page.h"
 #include "report/html/html_rows.h"
@@ -33,6 +34,7 @@ class HtmlReport final : public FeatureReport {
     footprints_.add(feature.inspected);
     findings_ += findings_of(feature.inspected).size();
     rows_.add(file_, feature.inspected);
+    curved_.add(feature.inspected);
     repairs_.add(feature.inspected);
     return Done{};
   }
@@ -53,7 +55,8 @@ class HtmlReport final : public FeatureReport {
   }
 
   Status finish() override {
-    for (const std::string& part : {top(), cards(), repairs_.html(tally_.repairs()), table_top()}) {
+    for (const std::string& part :
+         {top(), cards(), curved_.html(), repairs_.html(tally_.repairs()), table_top()}) {
       const Status status = sink_(part);
       if (!status) return status;
     }
@@ -76,6 +79,7 @@ class HtmlReport final : public FeatureReport {
   FindingRows rows_;
   Tally tally_;
   Footprints footprints_;
+  CurvedRows curved_;
   RepairRows repairs_;
   std::string file_;
   std::vector<std::string> files_;

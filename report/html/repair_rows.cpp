@@ -48,7 +48,7 @@ std::string RepairRows::html(const RepairCount& count) const {
     append(html, {"The first ", count_text(row_count_), " are shown; the JSON report has all. "});
   }
   append(html, {"The findings below are about the document after the repair.</p>",
-                "<div class=\"repairs\"><table><thead><tr><th>Solid</th>",
+                "<div class=\"listing repairs\"><table><thead><tr><th>Solid</th>",
                 "<th>Codes as read</th><th>Outcome</th></tr></thead><tbody>", rows_,
                 "</tbody></table></div>"});
   return html;

@@ -121,6 +121,28 @@ TEST_CASE("the findings of an object are together, under its name and that of it
   CHECK(count_of("<tr class=\"error\"", written.text.substr(first, second - first)) == 2);
 }
 
+TEST_CASE("a page lists what became of curved solids") {
+  pipeline::ValidatedFeature feature = feature_of("rod", {});
+  REQUIRE(feature.inspected.solids.size() == 1);
+  formats::Tessellation made;
+  made.faces = 1234;
+  made.chord = 0.01;
+  made.chord_error = 0.00425;
+  made.halvings = 2;
+  made.left_out = {{"#104", "its loops <cross>"}};
+  feature.inspected.solids[0].tessellation = made;
+  const std::string page = page_of({feature});
+  for (const char* part :
+       {"<h2 id=\"curved\">Curved solids</h2>", "1 solid became polyhedra. 1 face left out.",
+        "<td class=\"num\">1,234</td>", "0.00425 <span class=\"soft\">of 0.01</span>",
+        "face #104 is left out: its loops &lt;cross&gt;",
+        "chord halved 2 times until no facets crossed"}) {
+    CAPTURE(part);
+    CHECK(page.find(part) != std::string::npos);
+  }
+  CHECK(page_of({feature_of("box", {})}).find("id=\"curved\"") == std::string::npos);
+}
+
 TEST_CASE("a page says when nothing was checked") {
   pipeline::ValidatedFeature feature = feature_of("a", {});
   feature.inspected.solids.clear();

@@ -29,6 +29,8 @@ std::string brief(double number) {
   return text.data();
 }
 
+constexpr double kNoticeableGap = 0.001;  // of the chord; the JSON report has smaller ones too
+
 /// What was made of a curved solid, on a line.
 std::string tessellation_words(const pipeline::InspectedSolid& solid) {
   const formats::Tessellation& made = *solid.tessellation;
@@ -45,7 +47,7 @@ std::string tessellation_words(const pipeline::InspectedSolid& solid) {
   }
   text.append(", chord error ").append(brief(made.chord_error)).append(" m (limit ");
   text.append(brief(made.chord)).append(")");
-  if (made.gap > 0) {
+  if (made.gap > kNoticeableGap * made.chord) {
     text.append(", edges up to ").append(brief(made.gap)).append(" m off faces");
   }
   if (made.halvings > 0) {

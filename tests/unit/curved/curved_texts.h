@@ -9,8 +9,8 @@ namespace watertight::test {
 
 /// A cylinder of radius 200 mm and height 1000 mm, with a seam, in millimetres.
 std::string step_cylinder();
-/// The same solid as a part: a pair of it, once upright and once along x, is twice in the whole, the
-/// second time with the whole named first; and it is there once more as a mapped item.
+/// The same solid as a part: a pair of it, once upright and once along x, is twice in the whole,
+/// the second time with the whole named first; and it is there once more as a mapped item.
 std::string step_assembly();
 /// The same solid as the body of a wall, 10 m east of its storey, without a seam.
 std::string ifc_cylinder();

@@ -2,10 +2,11 @@
 #include "surfaces/curves/bezier.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory_resource>
 #include <utility>
+
+#include "base/work_memory.h"
 
 namespace watertight::surfaces {
 
@@ -56,9 +57,8 @@ struct Largest {
 }  // namespace
 
 CurvePoint point_at(const BezierCurve& curve, double t) {
-  std::array<std::byte, 1024> block;
-  std::pmr::monotonic_buffer_resource memory(block.data(), block.size());
-  std::pmr::vector<WeightedPoint> points(curve.points.begin(), curve.points.end(), &memory);
+  WorkMemory memory;
+  std::pmr::vector<WeightedPoint> points(curve.points.begin(), curve.points.end(), memory.get());
   std::size_t count = points.size();
   if (count == 1) return {points[0].place(), {}};
   for (; count > 2; --count) {
@@ -101,11 +101,10 @@ SurfacePoint point_at(const BezierPatch& patch, double u, double v) {
   const std::size_t columns = patch.columns;
   const std::size_t rows = patch.rows();
   // Along u first: for each row the value and its change.
-  std::array<std::byte, 2048> block;
-  std::pmr::monotonic_buffer_resource memory(block.data(), block.size());
-  std::pmr::vector<WeightedPoint> values(rows, &memory);
-  std::pmr::vector<WeightedPoint> changes(rows, &memory);
-  std::pmr::vector<WeightedPoint> work(columns, &memory);
+  WorkMemory memory;
+  std::pmr::vector<WeightedPoint> values(rows, memory.get());
+  std::pmr::vector<WeightedPoint> changes(rows, memory.get());
+  std::pmr::vector<WeightedPoint> work(columns, memory.get());
   for (std::size_t k = 0; k < rows; ++k) {
     std::copy_n(patch.points.begin() + static_cast<std::ptrdiff_t>(k * columns), columns,
                 work.begin());

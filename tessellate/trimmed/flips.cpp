@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory_resource>
 
+#include "base/work_memory.h"
 #include "tessellate/trimmed/neighbours.h"
 #include "tessellate/trimmed/plane_predicates.h"
 #include "tessellate/trimmed/region.h"
-#include "tessellate/trimmed/work_memory.h"
 
 namespace watertight::tessellate {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory_resource>
 #include <numeric>
 
-#include "tessellate/trimmed/work_memory.h"
+#include "base/work_memory.h"
 
 namespace watertight::tessellate {
 

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <set>
 
+#include "base/work_memory.h"
 #include "tessellate/trimmed/plane_predicates.h"
 #include "tessellate/trimmed/region.h"
-#include "tessellate/trimmed/work_memory.h"
 
 namespace watertight::tessellate {
 namespace {

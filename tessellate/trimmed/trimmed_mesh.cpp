@@ -29,26 +29,15 @@ std::pair<std::size_t, std::size_t> lines_between(const std::vector<double>& lin
           static_cast<std::size_t>(last - lines.begin())};
 }
 
-struct PlaneBox {
-  Point low;
-  Point high;
-};
-
-PlaneBox box_of(const std::array<Point, 3>& corners) {
-  const auto [left, right] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
-  const auto [below, above] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
-  return {{left, below, 0}, {right, above, 0}};
-}
-
 /// For each point the sides of a box beyond which it lies, as bits: the outcodes of D. Cohen and
 /// I. Sutherland.
-std::vector<std::uint8_t> outcodes_of(std::span<const Point> points, const PlaneBox& box) {
+std::vector<std::uint8_t> outcodes_of(std::span<const Point> points, const geometry::Box& box) {
   std::vector<std::uint8_t> codes(points.size());
   std::transform(points.begin(), points.end(), codes.begin(), [&](const Point& p) {
-    const unsigned left = p.x < box.low.x ? 1U : 0U;
-    const unsigned right = p.x > box.high.x ? 2U : 0U;
-    const unsigned below = p.y < box.low.y ? 4U : 0U;
-    const unsigned above = p.y > box.high.y ? 8U : 0U;
+    const unsigned left = p.x < box.min.x ? 1U : 0U;
+    const unsigned right = p.x > box.max.x ? 2U : 0U;
+    const unsigned below = p.y < box.min.y ? 4U : 0U;
+    const unsigned above = p.y > box.max.y ? 8U : 0U;
     return static_cast<std::uint8_t>(left | right | below | above);
   });
   return codes;
@@ -129,8 +118,9 @@ std::optional<RegionConflict> TrimmedMesh::change_loop(Change change, Index befo
   const int side = turn(points_[before], points_[middle], points_[after]);
   if (side < 0) std::swap(place[1], place[2]);
   // Every edge of a loop is a side of a triangle: each loop that the change may meet is in the gap.
-  const auto outcodes =
-      outcodes_of(points_, box_of({points_[place[0]], points_[place[1]], points_[place[2]]}));
+  const auto outcodes = outcodes_of(
+      points_,
+      geometry::box_of(std::array{points_[place[0]], points_[place[1]], points_[place[2]]}));
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     if (is_beyond_a_side(triangles_[t], outcodes)) continue;
     if (may_meet(triangles_[t], place)) change.triangles.push_back(t);
@@ -158,9 +148,9 @@ bool TrimmedMesh::may_meet(const Triangle& triangle, const std::array<Index, 3>&
 /// The grid points of a triangle that the region gains, but for those on its new border.
 void TrimmedMesh::add_grid_points(const std::array<Index, 3>& place, Change& change) {
   const std::array<Point, 3> corners{points_[place[0]], points_[place[1]], points_[place[2]]};
-  const PlaneBox box = box_of(corners);
-  const auto [first_u, last_u] = lines_between(grid_.us, box.low.x, box.high.x);
-  const auto [first_v, last_v] = lines_between(grid_.vs, box.low.y, box.high.y);
+  const geometry::Box box = geometry::box_of(corners);
+  const auto [first_u, last_u] = lines_between(grid_.us, box.min.x, box.max.x);
+  const auto [first_v, last_v] = lines_between(grid_.vs, box.min.y, box.max.y);
   for (std::size_t k = first_v; k < last_v; ++k) {
     for (std::size_t j = first_u; j < last_u; ++j) {
       const Point p{grid_.us[j], grid_.vs[k], 0};
@@ -193,8 +183,8 @@ bool TrimmedMesh::add_grid_line(std::size_t axis, double at) {
   Change change;
   std::vector<Index> point_of_line(lines(1 - axis).size(), kNone);
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  const PlaneBox line =
-      axis == 0 ? PlaneBox{{at, -kFar, 0}, {at, kFar, 0}} : PlaneBox{{-kFar, at, 0}, {kFar, at, 0}};
+  const geometry::Box line = axis == 0 ? geometry::Box{{at, -kFar, 0}, {at, kFar, 0}}
+                                       : geometry::Box{{-kFar, at, 0}, {kFar, at, 0}};
   const auto outcodes = outcodes_of(points_, line);
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     if (is_beyond_a_side(triangles_[t], outcodes)) continue;

@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <memory_resource>
 
-namespace watertight::tessellate {
+namespace watertight {
 
-/// Gives a block on the stack first, which is all that small regions need, then memory of the heap.
+/// Gives a block on the stack first, which is all that small inputs need, then memory of the heap.
 /// What is given back is free again when the object ends, and not before.
 class WorkMemory {
  public:
@@ -20,4 +20,4 @@ class WorkMemory {
   std::pmr::monotonic_buffer_resource resource_{block_.data(), block_.size()};
 };
 
-}  // namespace watertight::tessellate
+}  // namespace watertight

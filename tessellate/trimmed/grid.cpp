@@ -270,12 +270,7 @@ RegionTriangles sweep_along_longer(Region region) {
     vs.push_back(p.y);
   }
   if (distinct_count(std::move(us)) <= distinct_count(std::move(vs))) return sweep_region(region);
-  // The mirror image: u and v exchanged, and each edge in the other direction.
-  for (Point& p : region.points) std::swap(p.x, p.y);
-  for (PlaneEdge& edge : region.edges) std::swap(edge[0], edge[1]);
-  RegionTriangles result = sweep_region(region);
-  for (Triangle& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
-  return result;
+  return sweep_region_from_left(std::move(region));
 }
 
 }  // namespace

@@ -42,13 +42,17 @@ struct RegionConflict {
 
 struct RegionTriangles {
   std::vector<Triangle> triangles;         // left turns; empty if there is a conflict
-  std::optional<RegionConflict> conflict;  // the first that a sweep from below meets
+  std::optional<RegionConflict> conflict;  // the first that the sweep meets
 };
 
 /// Triangulates a region: no vertex is added, and every triangle has an area. A conflict is found
 /// exactly if there is one. Requires finite coordinates and indices within `points`. Cost:
 /// O(n log n).
 RegionTriangles sweep_region(const Region& region);
+
+/// The same by a sweep from the left: fewer edges have to be flipped afterwards where a region is
+/// longer along u.
+RegionTriangles sweep_region_from_left(Region region);
 
 /// Flips edges between triangles until each is Delaunay: the result is the constrained Delaunay
 /// triangulation, with triangles of the largest least angles. Of four points on a circle the

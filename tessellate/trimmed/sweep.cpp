@@ -4,6 +4,7 @@
 #include <memory_resource>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "base/work_memory.h"
 #include "tessellate/trimmed/plane_predicates.h"
@@ -283,5 +284,14 @@ class Sweep {
 }  // namespace
 
 RegionTriangles sweep_region(const Region& region) { return Sweep(region).run(); }
+
+RegionTriangles sweep_region_from_left(Region region) {
+  // The mirror image: u and v exchanged, and each edge in the other direction.
+  for (Point& p : region.points) std::swap(p.x, p.y);
+  for (PlaneEdge& edge : region.edges) std::swap(edge[0], edge[1]);
+  RegionTriangles result = sweep_region(region);
+  for (Triangle& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
+  return result;
+}
 
 }  // namespace watertight::tessellate

@@ -181,6 +181,7 @@ bool TrimmedMesh::add_grid_line(std::size_t axis, double at) {
   if (place != own.end() && *place == at) return false;
   own.insert(place, at);
   Change change;
+  change.is_along_u = axis == 1;
   std::vector<Index> point_of_line(lines(1 - axis).size(), kNone);
   constexpr double kFar = std::numeric_limits<double>::infinity();
   const geometry::Box line = axis == 0 ? geometry::Box{{at, -kFar, 0}, {at, kFar, 0}}
@@ -229,6 +230,7 @@ bool TrimmedMesh::remove_grid_line(std::size_t axis, double at) {
   if (place == own.end() || *place != at) return false;
   own.erase(place);
   Change change;
+  change.is_along_u = axis == 1;
   std::vector<bool> goes(points_.size(), false);
   for (Index point = 0; point < points_.size(); ++point) {
     goes[point] = is_grid_point_[point] && points_[point][static_cast<int>(axis)] == at;
@@ -248,7 +250,8 @@ bool TrimmedMesh::remove_grid_line(std::size_t axis, double at) {
 std::optional<RegionConflict> TrimmedMesh::apply(const Change& change) {
   if (change.triangles.empty() && change.new_border.empty()) return std::nullopt;
   const Gap gap = gap_of(change);
-  RegionTriangles swept = sweep_region(gap.region);
+  RegionTriangles swept =
+      change.is_along_u ? sweep_region_from_left(gap.region) : sweep_region(gap.region);
   if (swept.conflict) {
     for (PlaneEdge* edge : {&swept.conflict->first, &swept.conflict->second}) {
       for (Index& end : *edge) end = end == kNone ? kNone : gap.points[end];

@@ -57,6 +57,7 @@ class TrimmedMesh {
     std::vector<Index> going;              // points
     std::vector<PlaneEdge> new_border;
     std::vector<PlaneEdge> old_border;
+    bool is_along_u = false;  // how the gap lies
   };
 
   Index add_point(const Point& place);

@@ -8,6 +8,8 @@
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/constrained/constrained_delaunay.h"
 #include "delaunay/recovery/recover_faces.h"
+#include "geometry/intersection/box_partition.h"
+#include "tessellate/flatness.h"
 
 namespace watertight::delaunay {
 namespace {
@@ -32,13 +34,52 @@ RungResult failed_rung(const Error& error) {
           "refused: " + error.message};
 }
 
+/// Adds each facet of which a triangle crosses another one to `is_kept`. The canonical triangles of
+/// a valid solid do not cross, nor do those of facets in a plane; those that follow the Delaunay
+/// tetrahedralization may. False if there is none to add. Errors: cancelled.
+Result<bool> part_crossing_triangles(const Solid& solid, const FollowingTriangles& following,
+                                     std::vector<bool>& is_kept, const CancelPoll& is_cancelled) {
+  std::vector<Index> group_of(following.triangles.size(), 0);  // faces do not cross each other
+  for (Index i = 0; i < group_of.size(); ++i) {
+    if (following.delaunay_face[i] == kNone) group_of[i] = i + 1;
+  }
+  geometry::IntersectionOptions options;
+  options.cancel = is_cancelled;
+  options.group_of = group_of;
+  const auto crossing =
+      geometry::intersecting_pairs(solid.vertices(), following.triangles, options);
+  if (!crossing) return crossing.error();
+  bool has_changed = false;
+  for (const geometry::IntersectingPair& pair : *crossing) {
+    for (const Index triangle : {pair.first, pair.second}) {
+      const Index facet = following.facet_of[triangle];
+      if (is_kept[facet] || tessellate::is_flat(solid, facet)) continue;
+      is_kept[facet] = has_changed = true;
+    }
+  }
+  return has_changed;
+}
+
 }  // namespace
+
+OwnRungs::OwnRungs(const Solid& solid, const tessellate::FacetTriangles& triangles, bool is_divided,
+                   const CancelPoll& is_cancelled)
+    : solid_(solid), triangles_(triangles), is_divided_(is_divided), is_cancelled_(is_cancelled) {
+  const AxisScale scale = equal_units(solid);
+  points_ = solid.vertices();
+  if (scale == scale_) return;
+  auto points = scaled(points_, scale);
+  if (!points) return;
+  scale_ = scale;
+  scaled_ = *std::move(points);
+  points_ = scaled_;
+}
 
 /// Makes the canonical Delaunay tetrahedralization and the facets' triangles that follow it, but
 /// for facets that keep their canonical ones.
 std::optional<Error> OwnRungs::make_delaunay(const std::vector<bool>& is_kept) {
-  Result<CanonicalDelaunay> delaunay = canonical_delaunay(
-      solid_.vertices(), 4096 + kTetrahedraPerVertex * solid_.vertex_count(), is_cancelled_);
+  Result<CanonicalDelaunay> delaunay =
+      canonical_delaunay(points_, 4096 + kTetrahedraPerVertex * points_.size(), is_cancelled_);
   if (!delaunay) return delaunay.error();
   Result<FollowingTriangles> followed =
       follow_delaunay(solid_, triangles_, *delaunay, is_kept, is_cancelled_);
@@ -66,20 +107,28 @@ RungResult OwnRungs::recovered(const std::vector<bool>& is_taken_apart) {
   std::vector<bool> is_kept = is_taken_apart;
   is_kept.resize(solid_.facet_count());
   bool is_due = !following_ || is_divided_;
-  while (is_due || part_equal_triangles(following_->triangles, following_->facet_of, is_kept)) {
-    if (const auto error = make_delaunay(is_kept)) return failed_rung(*error);
-    is_due = false;
+  while (true) {
+    if (is_due) {
+      if (const auto error = make_delaunay(is_kept)) return failed_rung(*error);
+    }
+    is_due = part_equal_triangles(following_->triangles, following_->facet_of, is_kept);
+    if (is_due) continue;
+    const Result<bool> has_parted =
+        part_crossing_triangles(solid_, *following_, is_kept, is_cancelled_);
+    if (!has_parted) return failed_rung(has_parted.error());
+    is_due = *has_parted;
+    if (!is_due) break;
   }
   const FollowingTriangles following = *std::exchange(following_, std::nullopt);
   std::vector<Index> missing;
   for (Index i = 0; i < following.triangles.size(); ++i) {
     if (following.delaunay_face[i] == kNone) missing.push_back(i);
   }
-  Result<RecoveredFaces> recovered =
-      recover_faces(solid_.vertices(), std::exchange(tetrahedra_, {}), following.triangles, missing,
-                    is_cancelled_);
+  Result<RecoveredFaces> recovered = recover_faces(points_, std::exchange(tetrahedra_, {}),
+                                                   following.triangles, missing, is_cancelled_);
   if (!recovered) return failed_rung(recovered.error());
   if (recovered->missing > 0) return constrained(is_taken_apart);
+  unscale(recovered->points, scale_);
   std::vector<Index> facet_of;
   for (const Index source : recovered->source) facet_of.push_back(following.facet_of[source]);
   return {with_faces(std::move(recovered->points), std::move(recovered->tetrahedra),

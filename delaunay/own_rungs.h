@@ -5,11 +5,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/cancel.h"
 #include "base/result.h"
+#include "delaunay/axis_scale.h"
 #include "delaunay/canonical/follow_delaunay.h"
 #include "delaunay/rung.h"
 #include "delaunay/tetrahedralization.h"
@@ -32,11 +34,9 @@ class OwnRungs {
   /// Keeps references. Requires merged vertices, and `triangles`: the canonical ones, divided where
   /// shells touch (divide_at_contacts); `is_divided` tells whether they are.
   OwnRungs(const Solid& solid, const tessellate::FacetTriangles& triangles, bool is_divided,
-           const CancelPoll& is_cancelled)
-      : solid_(solid),
-        triangles_(triangles),
-        is_divided_(is_divided),
-        is_cancelled_(is_cancelled) {}
+           const CancelPoll& is_cancelled);
+  OwnRungs(const OwnRungs&) = delete;
+  OwnRungs& operator=(const OwnRungs&) = delete;
 
   /// Rung 0: the canonical Delaunay tetrahedralization, where facets are unions of its faces. A
   /// facet for which `is_kept` is true keeps its canonical triangles (empty: none does).
@@ -55,6 +55,9 @@ class OwnRungs {
                                 const std::vector<Index>& facet_of) const;
 
   const Solid& solid_;
+  AxisScale scale_{1, 1, 1};
+  std::vector<Point> scaled_;      // the vertices under a scaling that is not 1
+  std::span<const Point> points_;  // these, or the solid's own
   const tessellate::FacetTriangles& triangles_;
   bool is_divided_;
   const CancelPoll& is_cancelled_;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "delaunay/axis_scale.h"
 #include "delaunay/canonical/follow_delaunay.h"
 #include "delaunay/constrained/insert_facets.h"
 #include "delaunay/constrained/protect_edges.h"
@@ -35,34 +36,12 @@ std::vector<FlatFacet> flat_facets(const FollowingTriangles& following,
   return facets;
 }
 
-/// Powers of two that bring the extents of all axes within a factor of two. A tetrahedralization
-/// stays one under them; a solid that is flat or long needs fewer Steiner vertices.
-std::array<double, 3> equal_extents(const Box& box) {
-  std::array<double, 3> scale{1, 1, 1};
-  double largest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    largest = std::max(largest, box.max[axis] - box.min[axis]);
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    const double extent = box.max[axis] - box.min[axis];
-    if (extent > 0 && std::isfinite(largest)) {
-      scale[static_cast<std::size_t>(axis)] =
-          std::ldexp(1.0, std::ilogb(largest) - std::ilogb(extent));
-    }
-  }
-  return scale;
-}
-
 /// The solid under a scaling; none where a coordinate would not come back.
-std::optional<Solid> scaled(const Solid& solid, const std::array<double, 3>& scale) {
+std::optional<Solid> scaled_solid(const Solid& solid, const AxisScale& scale) {
+  std::optional<std::vector<Point>> vertices = scaled(solid.vertices(), scale);
+  if (!vertices) return std::nullopt;
   SolidArrays arrays = solid.arrays();
-  for (Point& p : arrays.vertices) {
-    const Point q{p.x * scale[0], p.y * scale[1], p.z * scale[2]};
-    if (q.x / scale[0] != p.x || q.y / scale[1] != p.y || q.z / scale[2] != p.z) {
-      return std::nullopt;
-    }
-    p = q;
-  }
+  arrays.vertices = *std::move(vertices);
   Result<Solid> result = Solid::make(std::move(arrays), solid.lattice(), solid.srid());
   if (!result) return std::nullopt;
   return *std::move(result);
@@ -74,8 +53,8 @@ Result<ConstrainedDelaunay> constrained_delaunay(const Solid& given,
                                                  const tessellate::FacetTriangles& triangles,
                                                  const std::vector<bool>& is_taken_apart,
                                                  const CancelPoll& is_cancelled) {
-  std::array<double, 3> scale = equal_extents(given.box());
-  std::optional<Solid> with_equal_extents = scaled(given, scale);
+  AxisScale scale = equal_extents(given.box());
+  std::optional<Solid> with_equal_extents = scaled_solid(given, scale);
   if (!with_equal_extents) scale = {1, 1, 1};
   const Solid& solid = with_equal_extents ? *with_equal_extents : given;
   Result<ProtectedSolid> divided = protect_edges(solid, triangles, is_taken_apart, is_cancelled);
@@ -98,9 +77,8 @@ Result<ConstrainedDelaunay> constrained_delaunay(const Solid& given,
                                                   flat_facets(*following, order), is_cancelled);
   if (!inserted) return inserted.error();
   ConstrainedDelaunay result;
-  for (const Point& p : points) {
-    result.points.push_back({p.x / scale[0], p.y / scale[1], p.z / scale[2]});
-  }
+  result.points.assign(points.begin(), points.end());
+  unscale(result.points, scale);
   result.tetrahedra = std::move(inserted->tetrahedra);
   result.missing = inserted->missing;
   for (const FlatFacet& facet : inserted->facets) {

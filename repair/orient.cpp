@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <map>
+#include <span>
 #include <utility>
 
 #include "geometry/measures.h"
@@ -14,36 +14,48 @@ namespace {
 
 /// A facet that passes an edge, and whether it does so from the smaller vertex on.
 struct Pass {
+  std::pair<Index, Index> edge;  // the smaller vertex first
   std::size_t facet = 0;
   bool is_forward = false;
 };
 
-using EdgePasses = std::map<std::pair<Index, Index>, std::vector<Pass>>;
-
-EdgePasses passes_of(const std::vector<EditedFacet>& facets) {
-  EdgePasses passes;
+/// The passes of all facets, those of an edge beside each other in the order of the facets.
+std::vector<Pass> passes_of(const std::vector<EditedFacet>& facets) {
+  std::vector<Pass> passes;
   for (std::size_t facet = 0; facet < facets.size(); ++facet) {
     for (const Ring& ring : facets[facet].rings) {
       for (std::size_t i = 0; i < ring.size(); ++i) {
         const Index from = ring[i];
         const Index to = ring[(i + 1) % ring.size()];
-        passes[std::minmax(from, to)].push_back({facet, from < to});
+        passes.push_back({std::minmax(from, to), facet, from < to});
       }
     }
   }
+  std::ranges::stable_sort(passes, {}, &Pass::edge);
   return passes;
+}
+
+/// Calls a function with the passes of each edge.
+template <class Function>
+void for_each_edge(std::span<const Pass> passes, const Function& function) {
+  while (!passes.empty()) {
+    std::size_t count = 1;
+    while (count < passes.size() && passes[count].edge == passes[0].edge) ++count;
+    function(passes.first(count));
+    passes = passes.subspan(count);
+  }
 }
 
 /// Facets that meet across edges of two facets, and whether the two disagree.
 std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours_of(
     const std::vector<EditedFacet>& facets) {
   std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(facets.size());
-  for (const auto& [edge, passes] : passes_of(facets)) {
-    if (passes.size() != 2 || passes[0].facet == passes[1].facet) continue;
+  for_each_edge(passes_of(facets), [&](std::span<const Pass> passes) {
+    if (passes.size() != 2 || passes[0].facet == passes[1].facet) return;
     const bool disagree = passes[0].is_forward == passes[1].is_forward;
     neighbours[passes[0].facet].emplace_back(passes[1].facet, disagree);
     neighbours[passes[1].facet].emplace_back(passes[0].facet, disagree);
-  }
+  });
   return neighbours;
 }
 
@@ -110,10 +122,12 @@ int sign_of_volume(const EditedSolid& edited, std::span<const EditedFacet> shell
 }
 
 bool is_closed(const std::vector<EditedFacet>& facets) {
-  const EdgePasses passes = passes_of(facets);
-  return std::ranges::all_of(passes, [](const auto& edge) {
-    return edge.second.size() == 2 && edge.second[0].is_forward != edge.second[1].is_forward;
+  bool is_closed = true;
+  for_each_edge(passes_of(facets), [&](std::span<const Pass> passes) {
+    const bool has_partner = passes.size() == 2 && passes[0].is_forward != passes[1].is_forward;
+    is_closed = is_closed && has_partner;
   });
+  return is_closed;
 }
 
 }  // namespace

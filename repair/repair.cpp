@@ -6,6 +6,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "repair/smooth/finer_lattice.h"
@@ -81,6 +82,20 @@ std::vector<Index> bent_facets(const validate::Report& report) {
   return facets;
 }
 
+/// A solid after some remedies.
+struct Treated {
+  EditedSolid solid;
+  std::vector<Remedy> changed;  // the remedies that changed something
+  Moves moves;
+  std::vector<HoleFill> holes;
+
+  void note(Remedy remedy, std::size_t changes) {
+    if (changes > 0 && std::ranges::find(changed, remedy) == changed.end()) {
+      changed.push_back(remedy);
+    }
+  }
+};
+
 class Trial {
  public:
   Trial(const Solid& solid, delaunay::EngineWorkers* workers, const RepairOptions& options)
@@ -88,43 +103,25 @@ class Trial {
 
   /// Applies a set of remedies. True if the result is valid.
   bool run(const Attempt& attempt, Repaired& repaired) {
-    EditedSolid work = start_;
-    std::vector<Remedy> changed;
-    Moves moves;
-    const auto note = [&](Remedy remedy, std::size_t changes) {
-      if (changes > 0 && std::ranges::find(changed, remedy) == changed.end()) {
-        changed.push_back(remedy);
-      }
-    };
-    if (has(options_, Remedy::rings)) note(Remedy::rings, mend_rings(work));
-    if (attempt.has_orientation) note(Remedy::orientation, orient(work));
-    if (attempt.weld_metres > 0) note(Remedy::weld, weld(work, attempt.weld_metres, moves));
-    if (attempt.has_junctions) note(Remedy::junctions, insert_junctions(work));
-    std::vector<HoleFill> holes;
-    if (attempt.has_fill) {
-      holes = filled(work, attempt);
-      if (attempt.joins_parts && holes.empty()) return false;
-      if (first_holes_.empty()) first_holes_ = holes;
-      for (const HoleFill& hole : holes)
-        note(hole.smooth ? Remedy::smooth : Remedy::fill, hole.facets);
-    }
-    if (attempt.has_orientation) note(Remedy::orientation, orient(work));
-    if (attempt.has_facets) note(Remedy::facets, mend_bent_facets(work));
-    if (changed.empty() || report_on(work) != nullptr) return false;
-    const Result<Solid> solid = solid_of(work);
+    const Treated& closed = attempt.has_fill ? with_fill(attempt) : without_fill(attempt);
+    if (attempt.joins_parts && closed.holes.empty()) return false;
+    Treated work = closed;
+    if (attempt.has_facets) work.note(Remedy::facets, mend_bent_facets(work.solid));
+    if (work.changed.empty() || report_on(work.solid) != nullptr) return false;
+    const Result<Solid> solid = solid_of(work.solid);
     if (!solid) return false;
     Inspection inspection = certify(*solid, workers_, options_.certify);
     if (!inspection.certified) {
-      tried_.push_back({std::move(work), std::move(inspection.report)});
+      tried_.push_back({std::move(work.solid), std::move(inspection.report)});
       return false;
     }
-    std::ranges::sort(changed);
+    std::ranges::sort(work.changed);
     repaired.outcome = Repaired::Outcome::repaired;
     repaired.after = std::move(inspection);
-    repaired.edits = std::move(work);
-    repaired.remedies = std::move(changed);
-    repaired.moves = moves;
-    repaired.holes = std::move(holes);
+    repaired.edits = std::move(work.solid);
+    repaired.remedies = std::move(work.changed);
+    repaired.moves = work.moves;
+    repaired.holes = std::move(work.holes);
     return true;
   }
 
@@ -137,6 +134,50 @@ class Trial {
     EditedSolid solid;
     validate::Report report;
   };
+
+  /// The solid after the remedies of a set that come before holes are filled.
+  const Treated& before_fill(const Attempt& attempt) {
+    const auto [found, is_new] = before_fill_.try_emplace(
+        {attempt.has_orientation, attempt.has_junctions, attempt.weld_metres});
+    Treated& work = found->second;
+    if (!is_new) return work;
+    work.solid = start_;
+    if (has(options_, Remedy::rings)) work.note(Remedy::rings, mend_rings(work.solid));
+    if (attempt.has_orientation) work.note(Remedy::orientation, orient(work.solid));
+    if (attempt.weld_metres > 0) {
+      work.note(Remedy::weld, weld(work.solid, attempt.weld_metres, work.moves));
+    }
+    if (attempt.has_junctions) work.note(Remedy::junctions, insert_junctions(work.solid));
+    return work;
+  }
+
+  /// The solid of a set without fillings, but for its bent facets.
+  const Treated& without_fill(const Attempt& attempt) {
+    const auto [found, is_new] = without_fill_.try_emplace(
+        {attempt.has_orientation, attempt.has_junctions, attempt.weld_metres});
+    if (is_new) found->second = oriented(before_fill(attempt), attempt);
+    return found->second;
+  }
+
+  /// The same with filled holes.
+  const Treated& with_fill(const Attempt& attempt) {
+    const auto [found, is_new] = with_fill_.try_emplace(
+        {attempt.weld_metres, attempt.has_smooth, attempt.prefers_plan, attempt.joins_parts});
+    if (!is_new) return found->second;
+    Treated work = before_fill(attempt);
+    work.holes = filled(work.solid, attempt);
+    for (const HoleFill& hole : work.holes) {
+      work.note(hole.smooth ? Remedy::smooth : Remedy::fill, hole.facets);
+    }
+    if (first_holes_.empty()) first_holes_ = work.holes;
+    found->second = oriented(std::move(work), attempt);
+    return found->second;
+  }
+
+  static Treated oriented(Treated work, const Attempt& attempt) {
+    if (attempt.has_orientation) work.note(Remedy::orientation, orient(work.solid));
+    return work;
+  }
 
   std::vector<HoleFill> filled(EditedSolid& work, const Attempt& attempt) const {
     FillHolesOptions filling;
@@ -178,6 +219,10 @@ class Trial {
   }
 
   EditedSolid start_;
+  // Sets have their first remedies in common; each of these is applied once.
+  std::map<std::tuple<bool, bool, double>, Treated> before_fill_;
+  std::map<std::tuple<bool, bool, double>, Treated> without_fill_;
+  std::map<std::tuple<double, bool, bool, bool>, Treated> with_fill_;
   std::vector<Tried> tried_;
   std::vector<HoleFill> first_holes_;
   delaunay::EngineWorkers* workers_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "delaunay/canonical/small_delaunay.h"
 #include "delaunay/canonical/sort_by_vertices.h"
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/constrained/constrained_delaunay.h"
@@ -69,7 +70,8 @@ OwnRungs::OwnRungs(const Solid& solid, const tessellate::FacetTriangles& triangl
   points_ = solid.vertices();
   if (scale == scale_) return;
   auto points = scaled(points_, scale);
-  if (!points) return;
+  // Points of a small grid take a fraction of the time of others.
+  if (!points || (is_small_grid(points_) && !is_small_grid(*points))) return;
   scale_ = scale;
   scaled_ = *std::move(points);
   points_ = scaled_;

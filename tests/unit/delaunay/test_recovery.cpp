@@ -12,6 +12,7 @@
 #include <set>
 #include <vector>
 
+#include "delaunay/canonical/follow_delaunay.h"
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/ladder.h"
 #include "delaunay/recovery/fill_cavity.h"
@@ -20,6 +21,7 @@
 #include "delaunay/recovery/recover_faces.h"
 #include "delaunay/recovery/signs.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
+#include "geometry/intersection/box_partition.h"
 #include "geometry/predicates/predicates.h"
 #include "geometry/solid.h"
 #include "sample_solids.h"
@@ -92,6 +94,81 @@ TEST_CASE("a solid of 249,000 triangles that rounding has dented is proven witho
   const delaunay::LadderResult result = climb_alone(sphere);
   REQUIRE(result.certificate.has_value());
   CHECK(result.certificate->rung == delaunay::Rung::recovered);
+}
+
+/// An oblique prism over a star, whose lids are not flat: triangles of a lid between two of its
+/// notches may cross the walls there.
+Shape bent_star(std::size_t corners, std::mt19937& random) {
+  Shape shape;
+  for (const int lid : {0, 1}) {
+    for (std::size_t i = 0; i < corners; ++i) {
+      const double turn =
+          2 * 3.14159265358979 * static_cast<double>(i) / static_cast<double>(corners);
+      const double radius = (i % 2 == 0 ? 9000 : 3000) + static_cast<double>(random() % 2000);
+      const double lift = static_cast<double>(random() % 1500);
+      shape.vertices.push_back({std::round(radius * std::cos(turn)) + 4000 * lid,
+                                std::round(radius * std::sin(turn)) + 3000 * lid,
+                                4000 * lid + lift});
+    }
+  }
+  samples::Shell& shell = shape.shells.emplace_back();
+  samples::Ring bottom;
+  samples::Ring top;
+  for (Index i = 0; i < corners; ++i) {
+    const auto n = static_cast<Index>(corners);
+    bottom.insert(bottom.begin(), i);
+    top.push_back(n + i);
+    shell.push_back({{i, (i + 1) % n, n + (i + 1) % n}});
+    shell.push_back({{i, n + (i + 1) % n, n + i}});
+  }
+  shell.push_back({bottom});
+  shell.push_back({top});
+  return shape;
+}
+
+bool have_crossing(const Solid& solid, const std::vector<Triangle>& triangles) {
+  return !geometry::intersecting_pairs(solid.vertices(), triangles)->empty();
+}
+
+TEST_CASE("facets keep their canonical triangles where others would cross") {
+  std::mt19937 random(5);
+  std::size_t crossing = 0;
+  for (int round = 0; round < 800; ++round) {
+    const Shape star = bent_star(12 + 2 * (random() % 8), random);
+    const Solid solid = samples::make_solid(star);
+    const auto canonical = tessellate::triangulate_facets(solid);
+    if (have_crossing(solid, canonical.triangles)) continue;  // not valid
+    const auto following = delaunay::follow_delaunay(
+        solid, canonical, *delaunay::canonical_delaunay(solid.vertices(), 1000));
+    if (!have_crossing(solid, following.triangles)) continue;
+    ++crossing;
+    INFO("round " << round);
+    const delaunay::LadderResult result = climb_alone(star);
+    REQUIRE(result.certificate.has_value());
+    // Where triangles cross, edges are divided over and over: 150 Steiner vertices in the mean.
+    CHECK(result.certificate->tetrahedralization.points.size() < solid.vertex_count() + 10);
+  }
+  CHECK(crossing > 10);
+}
+
+TEST_CASE("a solid whose axes have different units is proven as in metres") {
+  const Shape sphere = rounded_sphere(30, 2000);
+  const Solid in_metres = samples::make_solid(sphere);
+  SolidArrays arrays = in_metres.arrays();
+  for (Point& p : arrays.vertices) p.z *= 1024;
+  Lattice lattice;
+  lattice.kind = LatticeKind::binary;
+  lattice.step[2] = GridNumber{1, -10};
+  const Solid fine = Solid::make(std::move(arrays), lattice, 0).value();
+  REQUIRE(fine.world(7) == in_metres.world(7));
+  const auto facets = tessellate::triangulate_facets(in_metres);
+  const auto expected = delaunay::climb_ladder(in_metres, facets, nullptr, {});
+  const auto found = delaunay::climb_ladder(fine, facets, nullptr, {});
+  REQUIRE(expected.certificate.has_value());
+  REQUIRE(found.certificate.has_value());
+  CHECK(found.certificate->rung == expected.certificate->rung);
+  CHECK(found.certificate->tetrahedralization.tetrahedra ==
+        expected.certificate->tetrahedralization.tetrahedra);
 }
 
 TEST_CASE("Schoenhardt's prism gets Steiner points without an engine") {

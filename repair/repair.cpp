@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -88,6 +89,7 @@ struct Treated {
   std::vector<Remedy> changed;  // the remedies that changed something
   Moves moves;
   std::vector<HoleFill> holes;
+  std::optional<std::vector<Index>> bent;  // its bent facets, once they were asked for
 
   void note(Remedy remedy, std::size_t changes) {
     if (changes > 0 && std::ranges::find(changed, remedy) == changed.end()) {
@@ -103,10 +105,10 @@ class Trial {
 
   /// Applies a set of remedies. True if the result is valid.
   bool run(const Attempt& attempt, Repaired& repaired) {
-    const Treated& closed = attempt.has_fill ? with_fill(attempt) : without_fill(attempt);
+    Treated& closed = attempt.has_fill ? with_fill(attempt) : without_fill(attempt);
     if (attempt.joins_parts && closed.holes.empty()) return false;
     Treated work = closed;
-    if (attempt.has_facets) work.note(Remedy::facets, mend_bent_facets(work.solid));
+    if (attempt.has_facets) work.note(Remedy::facets, triangulate(work.solid, bent_in(closed)));
     if (work.changed.empty() || report_on(work.solid) != nullptr) return false;
     const Result<Solid> solid = solid_of(work.solid);
     if (!solid) return false;
@@ -152,7 +154,7 @@ class Trial {
   }
 
   /// The solid of a set without fillings, but for its bent facets.
-  const Treated& without_fill(const Attempt& attempt) {
+  Treated& without_fill(const Attempt& attempt) {
     const auto [found, is_new] = without_fill_.try_emplace(
         {attempt.has_orientation, attempt.has_junctions, attempt.weld_metres});
     if (is_new) found->second = oriented(before_fill(attempt), attempt);
@@ -160,7 +162,7 @@ class Trial {
   }
 
   /// The same with filled holes.
-  const Treated& with_fill(const Attempt& attempt) {
+  Treated& with_fill(const Attempt& attempt) {
     const auto [found, is_new] = with_fill_.try_emplace(
         {attempt.weld_metres, attempt.has_smooth, attempt.prefers_plan, attempt.joins_parts});
     if (!is_new) return found->second;
@@ -207,15 +209,17 @@ class Trial {
     return nullptr;
   }
 
-  std::size_t mend_bent_facets(EditedSolid& work) const {
-    if (const validate::Report* known = report_on(work); known != nullptr) {
-      return triangulate(work, bent_facets(*known));
+  const std::vector<Index>& bent_in(Treated& treated) const {
+    if (treated.bent) return *treated.bent;
+    treated.bent.emplace();
+    if (const validate::Report* known = report_on(treated.solid); known != nullptr) {
+      treated.bent = bent_facets(*known);
+    } else if (const Result<Solid> solid = solid_of(treated.solid); solid) {
+      CertifyOptions quick = options_.certify;
+      quick.proof = Proof::boundary;
+      treated.bent = bent_facets(certify(*solid, nullptr, quick).report);
     }
-    const Result<Solid> solid = solid_of(work);
-    if (!solid) return 0;
-    CertifyOptions quick = options_.certify;
-    quick.proof = Proof::boundary;
-    return triangulate(work, bent_facets(certify(*solid, nullptr, quick).report));
+    return *treated.bent;
   }
 
   EditedSolid start_;

@@ -3,6 +3,7 @@
 // Decides exactly along which axis a facet is projected.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <CGAL/Exact_rational.h>
 
@@ -25,6 +26,11 @@ constexpr std::int32_t kMostStepSpread = 5000;
 // power of two. One constant serves all latitudes, both axes, grads (100,188 m) and heights in
 // feet: a factor of a few only changes the slope at which the axis changes.
 constexpr double kDegree = 131072.0;  // 2^17
+// The filter in floating point: powers of ten up to this one have no rounding.
+constexpr std::int64_t kMostRoundedSpread = 22;
+constexpr double kHalfUlp = 1.0 / 9007199254740992.0;  // 2^-53
+constexpr double kUnderflow = 1e-200;                  // more than underflow can cause
+constexpr double kOverflow = 1e300;
 
 bool is_wide_enough(const Point& p) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -120,6 +126,66 @@ std::array<CGAL::Exact_rational, 3> world_weights(const Lattice& lattice, bool i
   return weights;
 }
 
+/// world_weights() within a few roundings; none for steps that are far apart.
+std::optional<std::array<double, 3>> rounded_weights(const Lattice& lattice, bool is_in_angles) {
+  std::int32_t largest = lattice.step[0].exponent;
+  for (const GridNumber& step : lattice.step) largest = std::max(largest, step.exponent);
+  std::array<double, 3> weights{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const GridNumber& step = lattice.step[axis];
+    const std::int64_t spread = std::int64_t{largest} - step.exponent;
+    if (spread > kMostRoundedSpread) return std::nullopt;
+    const double radix = lattice.kind == LatticeKind::decimal ? 10 : 2;
+    double weight = 1;
+    for (std::int64_t i = 0; i < spread; ++i) weight *= radix;
+    const std::int64_t mantissa = step.mantissa == 0 ? 1 : std::abs(step.mantissa);
+    weights[axis] = weight / static_cast<double>(mantissa);
+  }
+  if (is_in_angles) weights[2] *= kDegree;
+  return weights;
+}
+
+/// The projection where floating point is sure of it.
+std::optional<Projection> filtered_projection(std::span<const Point> vertices,
+                                              std::span<const Index> ring,
+                                              const std::array<double, 3>& weight) {
+  std::array<double, 3> area{};
+  std::array<double, 3> terms{};  // the sums of the terms' sizes
+  const Point& base = vertices[ring[0]];
+  const auto relative = [&](Index vertex) {
+    const Point& p = vertices[vertex];
+    return std::array<double, 3>{p.x - base.x, p.y - base.y, p.z - base.z};
+  };
+  std::array<double, 3> from = relative(ring[1]);
+  for (std::size_t i = 2; i < ring.size(); ++i) {
+    const std::array<double, 3> to = relative(ring[i]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t u = (axis + 1) % 3;
+      const std::size_t v = (axis + 2) % 3;
+      const double one = from[u] * to[v];
+      const double other = from[v] * to[u];
+      area[axis] += one - other;
+      terms[axis] += std::fabs(one) + std::fabs(other);
+    }
+    from = to;
+  }
+  // A term has at most four roundings, a sum one for each term; twice that covers the bound itself,
+  // the weights and the products with them.
+  const double error_of_term = 2 * (static_cast<double>(ring.size()) + 8) * kHalfUlp;
+  std::array<double, 3> size{};
+  std::array<double, 3> error{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    size[axis] = std::fabs(area[axis]) * weight[axis];
+    error[axis] = terms[axis] * weight[axis] * error_of_term + kUnderflow;
+  }
+  const auto most = static_cast<std::size_t>(std::ranges::max_element(size) - size.begin());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double rest = axis == most ? 0 : size[axis] + error[axis];
+    if (!(size[most] - error[most] > rest) || !(size[most] < kOverflow)) return std::nullopt;
+  }
+  return Projection{static_cast<int>(most), area[most] < 0, false};
+}
+
 }  // namespace
 
 Projection facet_projection(const Solid& solid, Index facet) {
@@ -137,6 +203,9 @@ Projection facet_projection(const Solid& solid, Index facet) {
       !has_angles && has_equal_steps && ring.size() < kMostWideTerms &&
       std::all_of(ring.begin(), ring.end(), [&](Index v) { return is_wide_enough(vertices[v]); });
   if (is_wide) return largest_component<Wide>(doubled_area<Wide>(vertices, ring), {1, 1, 1});
+  if (const auto weights = rounded_weights(solid.lattice(), has_angles)) {
+    if (const auto filtered = filtered_projection(vertices, ring, *weights)) return *filtered;
+  }
   return largest_component<CGAL::Exact_rational>(doubled_area<CGAL::Exact_rational>(vertices, ring),
                                                  world_weights(solid.lattice(), has_angles));
 }

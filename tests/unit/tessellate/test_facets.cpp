@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmpxx.h>
+
 #include <algorithm>
+#include <array>
 #include <catch2/catch_test_macros.hpp>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <random>
@@ -269,6 +273,46 @@ TEST_CASE("the projection of large and of fractional coordinates is exact") {
   CHECK(projection.axis == 2);
   const Ring fraction{{0.1, 0, 0}, {0.1, 0.3, 0}, {0.1, 0, 0.7}};
   CHECK(tessellate::facet_projection(facet_solid({fraction}), 0).axis == 0);
+}
+
+/// The axis of the largest component of a triangle's area vector, in fractions.
+int largest_axis(const Ring& t, const std::array<mpq_class, 3>& weight) {
+  std::array<mpq_class, 3> size;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    const auto side = [&](std::size_t end, int w) {
+      return mpq_class(mpq_class(t[end][w]) - mpq_class(t[0][w]));
+    };
+    const mpq_class doubled = side(1, u) * side(2, v) - side(1, v) * side(2, u);
+    size[static_cast<std::size_t>(axis)] = abs(doubled) * weight[static_cast<std::size_t>(axis)];
+  }
+  return static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+}
+
+TEST_CASE("projections agree with fractions, also where components are nearly equal") {
+  std::mt19937 random(11);
+  Lattice uneven;
+  uneven.step = {GridNumber{3, -7}, GridNumber{1, -5}, GridNumber{7, -3}};
+  const std::array<mpq_class, 3> even_weight{1, 1, 1};
+  const std::array<mpq_class, 3> uneven_weight{mpq_class(10000, 3), 100, mpq_class(1, 7)};
+  for (int round = 0; round < 4000; ++round) {
+    const bool is_uneven = round % 2 == 0;
+    const auto& weight = is_uneven ? uneven_weight : even_weight;
+    // The normal (1, 1, 1) in world scale, but for some units in the last place.
+    Ring ring{{0.1, 0.2, 0.3}, {1, -1, 0}, {0, 1, -1}};
+    for (std::size_t i = 1; i < 3; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        double& x = ring[i][axis];
+        x = ring[0][axis] + x * weight[static_cast<std::size_t>(axis)].get_d();
+        for (auto steps = random() % 4; steps > 0; --steps) x = std::nextafter(x, 1e9);
+      }
+    }
+    INFO(round);
+    const auto solid =
+        Solid::make(facet_solid({ring}).arrays(), is_uneven ? uneven : Lattice{}, 0).value();
+    CHECK(tessellate::facet_projection(solid, 0).axis == largest_axis(ring, weight));
+  }
 }
 
 TEST_CASE("holes may touch the exterior ring and each other in vertices") {

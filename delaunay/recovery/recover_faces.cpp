@@ -45,6 +45,10 @@ constexpr std::size_t kIdleRounds = 8;
 /// The same for a boundary of so many triangles or more, whose rounds take long.
 constexpr std::size_t kIdleRoundsOfMany = 3;
 constexpr std::size_t kManyTriangles = 50'000;
+/// So many times as many triangles missing as at the least, and so many more, mean that parts are
+/// in each other's way: more divisions would make more of them.
+constexpr std::size_t kMostGrowth = 2;
+constexpr std::size_t kSmallGrowth = 32;
 /// The rounds of flips alone; the search begins after them.
 constexpr std::size_t kRoundsOfFlips = 3;
 /// The most parts of triangles for each triangle of the boundary.
@@ -87,6 +91,7 @@ class Recovery {
       idle_rounds = missing_.size() < least_missing ? 0 : idle_rounds + 1;
       least_missing = std::min(least_missing, missing_.size());
       if (is_cancelled || missing_.empty() || idle_rounds == most_idle_rounds ||
+          missing_.size() > kMostGrowth * least_missing + kSmallGrowth ||
           triangles_.size() > most_parts || flips_.is_exhausted()) {
         break;
       }

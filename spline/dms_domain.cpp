@@ -163,7 +163,7 @@ void DmsDomain::list_functions() {
   std::vector<std::vector<Index>> functions(arrays_.triangles.size());
   for (Index function = 0; function < function_count(); ++function) {
     const std::vector<Point> knots = knots_of(function);
-    for (const Index t : grid_.near(table_[tops_[function]].rectangle)) {
+    for (const Index t : grid_.near(table_.rectangle(tops_[function]))) {
       if (!is_beyond_an_edge(knots, corners_at(arrays_, t))) functions[t].push_back(function);
     }
   }
@@ -205,14 +205,14 @@ void DmsDomain::plan_parts() {
       const std::array<Point, 3> corners = part_corners(corners_at(arrays_, t), part);
       const Rectangle around = Rectangle::around(corners);
       for (std::size_t i = 0; i < functions.size(); ++i) {
-        const bool is_near = table_[tops_[functions[i]]].rectangle.meets(around);
+        const bool is_near = table_.rectangle(tops_[functions[i]]).meets(around);
         if (is_near && !is_beyond_an_edge(knots[i], corners))
           planned_functions_.push_back(functions[i]);
       }
       for (const Index number : splines) {
         const SplitSpline& spline = table_[number];
-        const bool is_near = spline.rectangle.meets(around);
-        if (is_near && !(spline.is_leaf() && is_beyond_an_edge(spline.corners, corners)))
+        const bool is_near = table_.rectangle(number).meets(around);
+        if (is_near && !(spline.is_leaf() && is_beyond_an_edge(spline.corners(), corners)))
           planned_splines_.push_back(number);
       }
     }
@@ -236,10 +236,10 @@ std::vector<ConstantPiece> DmsDomain::second_derivatives(Index function) const {
   WATERTIGHT_ASSERT(degree() == 2);
   std::vector<ConstantPiece> pieces;
   const SplitSpline& top = table_[tops_[function]];
-  const auto outer = barycentric_gradients(top.corners, top.doubled_area);
+  const auto outer = table_.gradients(tops_[function]);
   for (std::size_t j = 0; j < 3; ++j) {
     const SplitSpline& middle = table_[top.lower[j]];
-    const auto inner = barycentric_gradients(middle.corners, middle.doubled_area);
+    const auto inner = table_.gradients(top.lower[j]);
     for (std::size_t k = 0; k < 3; ++k) {
       const double factor = 2 * scale_of(function) / table_[middle.lower[k]].doubled_area;
       pieces.push_back({middle.lower[k], factor * outer[j].x * inner[k].x,

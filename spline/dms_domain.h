@@ -82,7 +82,7 @@ class DmsDomain {
   std::span<const Index> functions_at(Index triangle) const;
 
   /// The corners of a triangle of knots that is a ConstantPiece's; it turns left.
-  const std::array<Point, 3>& leaf_corners(Index leaf) const { return table_[leaf].corners; }
+  std::array<Point, 3> leaf_corners(Index leaf) const { return table_[leaf].corners(); }
   /// The second derivatives of a function as a sum over leaves; degree 2 only.
   std::vector<ConstantPiece> second_derivatives(Index function) const;
 

@@ -35,10 +35,11 @@ void BasisEvaluator::compute_splines(std::span<const Index> splines, const Point
   ++point_;
   for (const Index number : splines) {
     const SplitSpline& spline = domain_.table_[number];
-    const auto& [a, b, c] = spline.corners;
+    const std::array<Point, 3> corners = spline.corners();
+    const auto& [a, b, c] = corners;
     double value = 0;
     if (spline.is_leaf()) {
-      if (is_in(spline.corners)) value = spline.inverse_area;
+      if (is_in(corners)) value = spline.inverse_area;
     } else {
       value = (twice_area(u, b, c) * value_of(spline.lower[0]) +
                twice_area(u, c, a) * value_of(spline.lower[1]) +
@@ -49,18 +50,21 @@ void BasisEvaluator::compute_splines(std::span<const Index> splines, const Point
   }
 }
 
-void BasisEvaluator::add_derivatives(const SplitSpline& top, double scale, int order,
-                                     BasisValue& value) const {
-  const auto outer = barycentric_gradients(top.corners, top.doubled_area);
+void BasisEvaluator::add_derivatives(Index function, int order, BasisValue& value) const {
+  const SplineTable& table = domain_.table_;
+  const Index spline = domain_.tops_[function];
+  const SplitSpline& top = table[spline];
+  const double scale = domain_.scales_[function];
+  const auto outer = table.gradients(spline);
   const int degree = domain_.degree();
   for (std::size_t j = 0; j < 3; ++j) {
     const double factor = degree * scale;
     const double lower = value_of(top.lower[j]);
     value.first[0] += factor * outer[j].x * lower;
     value.first[1] += factor * outer[j].y * lower;
-    const SplitSpline& middle = domain_.table_[top.lower[j]];
+    const SplitSpline& middle = table[top.lower[j]];
     if (order < 2 || middle.is_leaf()) continue;
-    const auto inner = barycentric_gradients(middle.corners, middle.doubled_area);
+    const auto inner = table.gradients(top.lower[j]);
     for (std::size_t k = 0; k < 3; ++k) {
       const double part = factor * (degree - 1) * value_of(middle.lower[k]);
       value.second[0] += part * outer[j].x * inner[k].x;
@@ -85,10 +89,9 @@ std::span<const BasisValue> BasisEvaluator::compute(Index triangle, const Point&
   found_.clear();
   for (std::size_t i = plan.first_function; i < end.first_function; ++i) {
     const Index function = domain_.planned_functions_[i];
-    const Index top = domain_.tops_[function];
-    const double scale = domain_.scales_[function];
-    BasisValue value{function, scale * value_of(top), {}, {}};
-    if (order > 0) add_derivatives(domain_.table_[top], scale, order, value);
+    BasisValue value{
+        function, domain_.scales_[function] * value_of(domain_.tops_[function]), {}, {}};
+    if (order > 0) add_derivatives(function, order, value);
     const bool is_zero = value.value == 0 && value.first == std::array<double, 2>{} &&
                          value.second == std::array<double, 3>{};
     if (!is_zero) found_.push_back(value);

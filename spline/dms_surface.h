@@ -46,7 +46,7 @@ class BasisEvaluator {
   std::span<const BasisValue> compute(Index triangle, const Point& u, int order, const IsIn& is_in);
   template <class IsIn>
   void compute_splines(std::span<const Index> splines, const Point& u, const IsIn& is_in);
-  void add_derivatives(const SplitSpline& top, double scale, int order, BasisValue& value) const;
+  void add_derivatives(Index function, int order, BasisValue& value) const;
   double value_of(Index spline) const {
     return splines_[spline].point == point_ ? splines_[spline].value
                                             : 0;  // else it is beyond its knots

@@ -10,12 +10,11 @@
 namespace watertight::spline {
 namespace {
 
-SplitSpline leaf_of(std::span<const Point> knots) {
-  SplitSpline leaf;
-  leaf.corners = {knots[0], knots[1], knots[2]};
-  if (geometry::turn(knots[0], knots[1], knots[2]) < 0) std::swap(leaf.corners[1], leaf.corners[2]);
-  leaf.doubled_area = twice_area(leaf.corners[0], leaf.corners[1], leaf.corners[2]);
-  return leaf;
+/// The corners of a triangle that turns left.
+std::array<Point, 3> left_turn_of(std::span<const Point> knots) {
+  std::array<Point, 3> corners{knots[0], knots[1], knots[2]};
+  if (geometry::turn(knots[0], knots[1], knots[2]) < 0) std::swap(corners[1], corners[2]);
+  return corners;
 }
 
 }  // namespace
@@ -29,14 +28,16 @@ Index SplineTable::add(std::span<const Index> numbers, std::span<const Point> kn
   if (const auto found = known_.find(key); found != known_.end()) return found->second;
 
   SplitSpline spline;
+  std::array<Point, 3> corners;
   if (knots.size() == 3) {
-    spline = leaf_of(knots);
+    corners = left_turn_of(knots);
+    spline.doubled_area = twice_area(corners[0], corners[1], corners[2]);
   } else {
     const BaseTriple triple = base_triple(knots);
     spline.doubled_area = triple.doubled_area;
     for (std::size_t j = 0; j < 3; ++j) {
       const auto place = static_cast<std::size_t>(triple.places[j]);
-      spline.corners[j] = knots[place];
+      corners[j] = knots[place];
       std::vector<Index> fewer_numbers(numbers.begin(), numbers.end());
       std::vector<Point> fewer(knots.begin(), knots.end());
       fewer_numbers.erase(fewer_numbers.begin() + triple.places[j]);
@@ -44,10 +45,11 @@ Index SplineTable::add(std::span<const Index> numbers, std::span<const Point> kn
       spline.lower[j] = add(fewer_numbers, fewer);
     }
   }
+  for (std::size_t j = 0; j < 3; ++j) spline.places[j] = {corners[j].x, corners[j].y};
   spline.inverse_area = 1 / spline.doubled_area;
-  spline.rectangle = Rectangle::around(knots);
   const auto number = static_cast<Index>(splines_.size());
   splines_.push_back(spline);
+  rectangles_.push_back(Rectangle::around(knots));
   known_.emplace(key, number);
   return number;
 }

@@ -32,15 +32,15 @@ class StripMaker {
     }
     std::vector<Strip> strips;
     while (const auto start = next_start()) {
-      Walk best = best_walk_from(*start);
+      find_best_walk(*start, best_);
       // The way back from its end may go on beyond its start.
       for (int turns = 0; turns < kMostTurns; ++turns) {
-        Walk back = best_walk_from(best.triangles.back());
-        if (!is_better(back, best)) break;
-        best = std::move(back);
+        find_best_walk(best_.triangles.back(), back_);
+        if (!is_better(back_, best_)) break;
+        std::swap(back_, best_);
       }
-      for (const std::uint32_t triangle : best.triangles) take(triangle);
-      strips.push_back(std::move(best.strip));
+      for (const std::uint32_t triangle : best_.triangles) take(triangle);
+      strips.push_back(best_.strip);
     }
     return strips;
   }
@@ -58,13 +58,12 @@ class StripMaker {
     return one != two ? one < two : walk.triangles.size() > other.triangles.size();
   }
 
-  Walk best_walk_from(std::uint32_t triangle) {
-    Walk best = walk_from(3 * triangle);
+  void find_best_walk(std::uint32_t triangle, Walk& best) {
+    walk_from(3 * triangle, best);
     for (std::uint32_t k = 1; k < 3; ++k) {
-      Walk walk = walk_from(3 * triangle + k);
-      if (is_better(walk, best)) best = std::move(walk);
+      walk_from(3 * triangle + k, other_);
+      if (is_better(other_, best)) std::swap(other_, best);
     }
-    return best;
   }
 
   /// A triangle with the fewest neighbours that are left; nothing when all are taken.
@@ -94,12 +93,12 @@ class StripMaker {
 
   /// The triangles from an edge on, each across the side that needs no repeated vertex if one is
   /// left there.
-  Walk walk_from(std::uint32_t edge) {
+  void walk_from(std::uint32_t edge, Walk& walk) {
     ++trial_;
-    Walk walk;
+    walk.triangles.clear();
     Index p = start_of(triangles_, edge);
     Index q = start_of(triangles_, next_edge(edge));
-    walk.strip = {p, q};
+    walk.strip.assign({p, q});
     bool is_even = true;  // the next triangle of the strip is not the other way round
     for (;;) {
       tried_[edge / 3] = trial_;
@@ -118,7 +117,7 @@ class StripMaker {
         edge = aside;
       } else {
         walk.strip.push_back(r);
-        return walk;
+        return;
       }
       q = r;
     }
@@ -130,6 +129,9 @@ class StripMaker {
   std::vector<std::uint32_t> tried_;  // triangle -> last trial that went through it
   std::vector<bool> is_taken_;
   std::uint32_t trial_ = 0;
+  Walk best_;  // these keep their room
+  Walk back_;
+  Walk other_;
   std::array<std::deque<std::uint32_t>, 4> waiting_;  // by left_; outdated ones are skipped
 };
 

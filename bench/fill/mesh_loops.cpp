@@ -3,17 +3,19 @@
 // Compares the best filling from Delaunay triangles with the best one from all triangles, on loops
 // of edges of a mesh, as section 4.2 of Zou, Ju and Carr 2013 does.
 //
-//   mesh_loops FILE LOOPS COUNT LEAST MOST
+//   mesh_loops FILE LOOPS COUNT LEAST MOST [both]
 //
 // Makes COUNT sets of LOOPS random loops of LEAST to MOST vertices, each the border of a disc of
-// triangles. Prints the share of sets with an area above 0.97 of the other's, and with an angle
-// less than 5 and 10 degrees above the other's for each interior edge.
+// triangles. With `both` the loops are curves that may be passed in both senses, as in the paper;
+// else they are borders of holes. Prints the share of sets with an area above 0.97 of the other's,
+// and with an angle less than 5 and 10 degrees above the other's for each interior edge.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/fill/random_loop.h"
@@ -29,13 +31,15 @@ struct Compared {
   double degrees = 0;  // per interior edge
 };
 
-std::optional<Compared> compare(const bench::Mesh& mesh, const std::vector<fill::Loop>& loops) {
+std::optional<Compared> compare(const bench::Mesh& mesh, const std::vector<fill::Loop>& loops,
+                                bool has_both_senses) {
   std::size_t vertices = 0;
   for (const fill::Loop& loop : loops) vertices += loop.size();
   const auto filled = [&](fill::CandidateSpace space, fill::Objective objective) {
     fill::FillOptions options;
     options.space = space;
     options.objective = objective;
+    options.has_both_senses = has_both_senses;
     options.max_bytes = std::size_t{8} << 30U;
     options.max_domains = 100'000'000;
     return fill::triangulate_loops(mesh.points, loops, options);
@@ -63,6 +67,7 @@ int main(int argc, char** argv) {
   const std::size_t count = std::stoul(argv[3]);
   const std::size_t least = std::stoul(argv[4]);
   const std::size_t most = std::stoul(argv[5]);
+  const bool has_both_senses = argc > 6 && std::string_view(argv[6]) == "both";
   test::Random random(2013);
   std::vector<Compared> results;
   std::size_t unfilled = 0;
@@ -77,7 +82,7 @@ int main(int argc, char** argv) {
       taken.insert(loop->begin(), loop->end());
       loops.push_back(*loop);
     }
-    if (const auto compared = compare(mesh, loops)) {
+    if (const auto compared = compare(mesh, loops, has_both_senses)) {
       results.push_back(*compared);
     } else {
       ++unfilled;

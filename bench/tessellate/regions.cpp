@@ -217,10 +217,17 @@ std::vector<std::vector<Point>> loops_of(const Region& region) {
   return loops;
 }
 
+// Least seconds of five runs.
+double least_seconds_of(const std::function<void()>& work) {
+  double least = seconds_of(work);
+  for (int i = 0; i < 4; ++i) least = std::min(least, seconds_of(work));
+  return least;
+}
+
 void show_shapes() {
   std::printf(
       "grid  loop  triangles  mean least angle: ours  CGAL  sweep  edges at a vertex  indices a "
-      "triangle\n");
+      "triangle  ns a triangle: made  strips\n");
   std::mt19937 random(1);
   for (const auto& [lines, count] : {std::pair<std::size_t, std::size_t>{4, 12},
                                      {10, 30},
@@ -233,6 +240,8 @@ void show_shapes() {
     double swept = 0;
     double edges = 0;
     double indices = 0;
+    double making = 0;
+    double stripping = 0;
     std::size_t triangles = 0;
     constexpr int kRounds = 20;
     for (int round = 0; round < kRounds; ++round) {
@@ -255,9 +264,15 @@ void show_shapes() {
       }
       indices += static_cast<double>(length) / static_cast<double>(mesh.triangles.size()) / kRounds;
       triangles += mesh.triangles.size();
+      making += least_seconds_of(
+          [&] { tessellate::triangulate_trimmed(loops, grid_of(lines), clearance); });
+      stripping +=
+          least_seconds_of([&] { tessellate::strips_of(mesh.triangles, mesh.points.size()); });
     }
-    std::printf("%4zu  %4zu  %9zu  %22.1f  %4.1f  %5.1f  %17.2f  %18.2f\n", lines, count,
-                triangles / kRounds, ours, peer, swept, edges, indices);
+    const auto each = static_cast<double>(triangles) / 1e9;
+    std::printf("%4zu  %4zu  %9zu  %22.1f  %4.1f  %5.1f  %17.2f  %18.2f  %20.0f  %6.0f\n", lines,
+                count, triangles / kRounds, ours, peer, swept, edges, indices, making / each,
+                stripping / each);
   }
 }
 
@@ -278,13 +293,6 @@ void show_loops(std::size_t count, std::size_t holes) {
     }
     std::printf("\n");
   }
-}
-
-// Least seconds of five runs over all regions.
-double least_seconds_of(const std::function<void()>& work) {
-  double least = seconds_of(work);
-  for (int i = 0; i < 4; ++i) least = std::min(least, seconds_of(work));
-  return least;
 }
 
 // Seconds that facets of one ring of few vertices take; infinite for other regions.

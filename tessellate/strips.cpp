@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <utility>
 
@@ -28,7 +27,7 @@ class StripMaker {
       for (std::uint32_t k = 0; k < 3; ++k) {
         if (twins_[3 * t + k] != kNone) ++left_[t];
       }
-      waiting_[left_[t]].push_back(t);
+      waiting_[left_[t]].triangles.push_back(t);
     }
     std::vector<Strip> strips;
     while (const auto start = next_start()) {
@@ -51,6 +50,11 @@ class StripMaker {
     std::vector<std::uint32_t> triangles;
   };
 
+  struct Queue {
+    std::vector<std::uint32_t> triangles;
+    std::size_t first = 0;
+  };
+
   /// Whether a walk has fewer indices for each triangle, or as many with more triangles.
   static bool is_better(const Walk& walk, const Walk& other) {
     const std::size_t one = walk.strip.size() * other.triangles.size();
@@ -69,9 +73,9 @@ class StripMaker {
   /// A triangle with the fewest neighbours that are left; nothing when all are taken.
   std::optional<std::uint32_t> next_start() {
     for (std::size_t left = 0; left < waiting_.size(); ++left) {
-      while (!waiting_[left].empty()) {
-        const std::uint32_t triangle = waiting_[left].front();
-        waiting_[left].pop_front();
+      auto& [triangles, first] = waiting_[left];
+      while (first < triangles.size()) {
+        const std::uint32_t triangle = triangles[first++];
         if (!is_taken_[triangle] && left_[triangle] == left) return triangle;
       }
     }
@@ -83,7 +87,7 @@ class StripMaker {
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t twin = twins_[3 * triangle + k];
       if (twin == kNone || is_taken_[twin / 3]) continue;
-      waiting_[--left_[twin / 3]].push_back(twin / 3);
+      waiting_[--left_[twin / 3]].triangles.push_back(twin / 3);
     }
   }
 
@@ -132,7 +136,7 @@ class StripMaker {
   Walk best_;  // these keep their room
   Walk back_;
   Walk other_;
-  std::array<std::deque<std::uint32_t>, 4> waiting_;  // by left_; outdated ones are skipped
+  std::array<Queue, 4> waiting_;  // by left_; outdated ones are skipped
 };
 
 }  // namespace

@@ -348,13 +348,15 @@ Repaired repair(const Solid& solid, delaunay::EngineWorkers* workers,
     return repaired;
   }
   Trial trial(solid, workers, options);
-  const CancelPoll& is_cancelled = options.certify.ladder.cancel;
+  const auto is_cancelled = [&] {
+    return options.certify.ladder.cancel && options.certify.ladder.cancel();
+  };
   for (const Attempt& attempt : attempts_of(options)) {
-    if (trial.run(attempt, repaired)) break;
-    repaired.is_stopped = is_cancelled && is_cancelled();
-    if (repaired.is_stopped) break;
+    if (is_cancelled() || trial.run(attempt, repaired)) break;
   }
-  if (repaired.outcome != Repaired::Outcome::repaired) repaired.holes = trial.first_holes();
+  if (repaired.outcome == Repaired::Outcome::repaired) return repaired;
+  repaired.is_stopped = is_cancelled();
+  repaired.holes = trial.first_holes();
   return repaired;
 }
 

@@ -4,6 +4,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 
 #include "geometry/canonical_form.h"
@@ -367,6 +368,53 @@ TEST_CASE("a remedy that was not asked for is not applied") {
   CHECK(result.outcome == Outcome::not_repaired);
   CHECK(!result.after);
   CHECK(result.before.verdict == Verdict::invalid);
+}
+
+/// A sphere of `count` parallels and twice as many meridians, in millimetres.
+solids::Shell sphere_of(int count) {
+  const double radius = 20'000;
+  std::vector<Point> points{{0, 0, radius}, {0, 0, -radius}};
+  const auto at = [&](int i, int j) {
+    const double u = 3.14159265358979 * i / count;
+    const double v = 3.14159265358979 * (j % (2 * count)) / count;
+    return Point{std::round(radius * std::sin(u) * std::cos(v)),
+                 std::round(radius * std::sin(u) * std::sin(v)), std::round(radius * std::cos(u))};
+  };
+  solids::Shell shell;
+  for (int j = 0; j < 2 * count; ++j) {
+    shell.push_back({{points[0], at(1, j), at(1, j + 1)}});
+    shell.push_back({{points[1], at(count - 1, j + 1), at(count - 1, j)}});
+    for (int i = 1; i + 1 < count; ++i) {
+      shell.push_back({{at(i, j), at(i + 1, j), at(i + 1, j + 1)}});
+      shell.push_back({{at(i, j), at(i + 1, j + 1), at(i, j + 1)}});
+    }
+  }
+  return shell;
+}
+
+TEST_CASE("a repair ends within 50 ms of processor time after the wish to cancel") {
+  // With a hole, a facet that looks inwards, and one twice.
+  solids::Shell shell = sphere_of(24);
+  shell.erase(shell.begin() + 100, shell.begin() + 120);
+  std::reverse(shell[300][0].begin(), shell[300][0].end());
+  shell.push_back(shell[700]);
+  const Solid solid = solids::solid_of({shell}, solids::millimetres());
+  bool has_ended = false;
+  for (int polls = 1; !has_ended; polls += 1 + polls / 2) {
+    RepairOptions options = everything(0.001);
+    int asked = 0;
+    std::clock_t wished = 0;
+    options.certify.ladder.cancel = [&] {
+      if (++asked < polls) return false;
+      if (wished == 0) wished = std::clock();
+      return true;
+    };
+    const Repaired result = repair(solid, nullptr, options);
+    has_ended = wished == 0;
+    if (has_ended) continue;
+    CHECK(static_cast<double>(std::clock() - wished) < 0.05 * CLOCKS_PER_SEC);
+    CHECK(result.outcome == Outcome::not_repaired);
+  }
 }
 
 /// How often each kind of defect is made; WATERTIGHT_REPAIR_ROUNDS asks for more.

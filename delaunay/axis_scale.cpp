@@ -10,27 +10,36 @@
 namespace watertight::delaunay {
 namespace {
 
+/// A degree counts as 2^17 metres, as for the projection of facets (tessellate/facets.h).
+constexpr int kDegreeExponent = 17;
+
 /// The exponent of the nearest power of two; above the middle of two by their product, the upper.
 int nearest_exponent(double x) {
   int exponent = 0;
   return std::frexp(x, &exponent) < std::numbers::sqrt2 / 2 ? exponent - 1 : exponent;
 }
 
+/// True if the horizontal axes of a solid are angles.
+bool is_in_angles(const Solid& solid) {
+  const double largest = geometry::largest_angle(solid.srid());
+  if (largest == 0) return false;
+  const geometry::Box box = solid.box();
+  for (const Point& corner : {box.min, box.max}) {
+    const auto place = solid.lattice().world(corner);
+    if (std::abs(place[0]) > largest || std::abs(place[1]) > largest) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 AxisScale equal_units(const Solid& solid) {
-  const Lattice& lattice = solid.lattice();
-  const geometry::Box box = solid.box();
-  const auto low = lattice.world(box.min);
-  const auto high = lattice.world(box.max);
-  std::array<double, 3> centre{};
-  for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = (low[axis] + high[axis]) / 2;
-  const auto metres = geometry::axis_units(solid.srid(), centre).metres_per_unit;
+  const bool has_angles = is_in_angles(solid);
   std::array<int, 3> exponents{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double unit = lattice.scale(static_cast<int>(axis)) * metres[axis];
-    if (!(unit > 0) || !std::isfinite(unit)) return {1, 1, 1};
-    exponents[axis] = nearest_exponent(unit);
+    const double step = solid.lattice().scale(static_cast<int>(axis));
+    if (!(step > 0) || !std::isfinite(step)) return {1, 1, 1};
+    exponents[axis] = nearest_exponent(step) + (has_angles && axis < 2 ? kDegreeExponent : 0);
   }
   AxisScale scale{1, 1, 1};
   const int least = *std::min_element(exponents.begin(), exponents.end());

@@ -16,8 +16,9 @@ namespace watertight::delaunay {
 /// A factor for each axis, at least 1.
 using AxisScale = std::array<double, 3>;
 
-/// Brings the lengths of all axes' units within a factor of 1.5: a solid in degrees and metres then
-/// has about its true shape. No factor but 1 where the units are equal.
+/// Brings the lattice steps of all axes within a factor of 1.5, with a degree as 2^17 metres: a
+/// solid in degrees and metres then has about its true shape. No factor but 1 where the units are
+/// equal.
 AxisScale equal_units(const Solid& solid);
 
 /// Brings the extents of all axes within a factor of two.

@@ -45,8 +45,7 @@ constexpr std::size_t kIdleRounds = 8;
 /// The same for a boundary of so many triangles or more, whose rounds take long.
 constexpr std::size_t kIdleRoundsOfMany = 3;
 constexpr std::size_t kManyTriangles = 50'000;
-/// So many times as many triangles missing as at the least, and so many more, mean that parts are
-/// in each other's way: more divisions would make more of them.
+/// The most triangles that may be missing: so many times the least number so far, and so many more.
 constexpr std::size_t kMostGrowth = 2;
 constexpr std::size_t kSmallGrowth = 32;
 /// The rounds of flips alone; the search begins after them.

@@ -208,11 +208,13 @@ void TrimmedMesh::add_line_points(std::size_t axis, double at, std::uint32_t tri
   const auto [first, last] = lines_between(others, from, to);
   for (std::size_t k = first; k < last; ++k) {
     const Point p = axis == 0 ? Point{at, others[k], 0} : Point{others[k], at, 0};
-    bool is_inside = is_in(corners, p);
+    bool is_inside = true;
+    std::size_t touched = 0;  // sides; two meet in a corner
     for (std::size_t side = 0; is_inside && side < 3; ++side) {
-      const auto edge = static_cast<std::uint32_t>(3 * triangle + side);
-      is_inside = twins_[edge] != kNone || turn(corners[side], corners[(side + 1) % 3], p) > 0;
-      if (p.x == corners[side].x && p.y == corners[side].y) is_inside = false;
+      const int turned = turn(corners[side], corners[(side + 1) % 3], p);
+      if (turned == 0) ++touched;
+      const bool has_other_side = twins_[3 * std::size_t{triangle} + side] != kNone;
+      is_inside = turned > 0 || (turned == 0 && touched < 2 && has_other_side);
     }
     if (!is_inside) continue;
     if (change.triangles.empty() || change.triangles.back() != triangle) {

@@ -495,6 +495,7 @@ Result<GmlText> gml_text(ByteView bytes, const ReadOptions& options) {
 
 Result<EditedGml> edit_gml(ByteView bytes, const ReadOptions& options,
                            std::span<const SolidEdit> edits) {
+  if (edits.empty()) return EditedGml{Bytes(bytes.begin(), bytes.end()), {}};
   if (!has_ascii(as_text(bytes))) {
     return Error{ErrorCode::unsupported, "GML in UTF-16 cannot be changed: convert it to UTF-8"};
   }

@@ -30,7 +30,8 @@ struct EditedGml {
 ///   - a new facet becomes a polygon with a new gml:id, the last of its shell.
 /// Textures of changed polygons are taken out. The document is read again, and its solids are
 /// compared with those that were asked for. Errors: those of read_document(); unsupported for
-/// encodings without ASCII and where the comparison fails. Cost: that of reading, three times.
+/// encodings without ASCII and where the comparison fails. Cost: that of reading, three times;
+/// without edits that of a copy.
 Result<EditedGml> edit_gml(ByteView bytes, const ReadOptions& options,
                            std::span<const SolidEdit> edits);
 

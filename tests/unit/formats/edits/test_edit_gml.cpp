@@ -281,9 +281,14 @@ TEST_CASE("a polygon of two solids that one of them changes stays in the other")
 TEST_CASE("GML in UTF-16 is not changed") {
   std::string text("\xFF\xFE", 2);
   for (const char c : std::string("<g/>")) text.append({c, '\0'});
-  const auto gml = formats::edit_gml(as_bytes(text), ReadOptions{}, {});
+  const Solid nothing = Solid::make(SolidArrays{}, Lattice{}, 0).value();
+  const SolidEdit edit{0, nothing, {}};
+  const auto gml = formats::edit_gml(as_bytes(text), ReadOptions{}, {&edit, 1});
   REQUIRE_FALSE(gml);
   CHECK(gml.error().code == ErrorCode::unsupported);
+  const auto same = formats::edit_gml(as_bytes(text), ReadOptions{}, {});
+  REQUIRE(same);
+  CHECK(std::ranges::equal(same->text, as_bytes(text)));
 }
 
 TEST_CASE("the end of an element is found behind comments, CDATA sections and quoted signs") {

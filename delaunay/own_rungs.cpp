@@ -18,6 +18,8 @@ namespace {
 /// A Delaunay tetrahedralization of a boundary has about 7 tetrahedra for each vertex; far more
 /// means a degenerate set for which rung 0 must not use up the memory.
 constexpr std::uint64_t kTetrahedraPerVertex = 256;
+/// The rounds after which all facets that are not flat keep their canonical triangles.
+constexpr int kMostPartings = 8;
 
 RungResult missing_faces(std::size_t missing, std::size_t all, const char* faces) {
   return {std::nullopt, RungOutcome::not_delaunay,
@@ -33,6 +35,12 @@ RungResult failed_rung(const Error& error) {
   const bool is_limit = error.code == ErrorCode::limit_exceeded;
   return {std::nullopt, is_limit ? RungOutcome::memory_limit : RungOutcome::engine_error,
           "refused: " + error.message};
+}
+
+void keep_bent_facets(const Solid& solid, std::vector<bool>& is_kept) {
+  for (Index facet = 0; facet < solid.facet_count(); ++facet) {
+    if (!tessellate::is_flat(solid, facet)) is_kept[facet] = true;
+  }
 }
 
 /// Adds each facet of which a triangle crosses another one to `is_kept`. The canonical triangles of
@@ -109,17 +117,19 @@ RungResult OwnRungs::recovered(const std::vector<bool>& is_taken_apart) {
   std::vector<bool> is_kept = is_taken_apart;
   is_kept.resize(solid_.facet_count());
   bool is_due = !following_ || is_divided_;
-  while (true) {
+  for (int round = 0; round <= kMostPartings; ++round) {
     if (is_due) {
       if (const auto error = make_delaunay(is_kept)) return failed_rung(*error);
     }
     is_due = part_equal_triangles(following_->triangles, following_->facet_of, is_kept);
-    if (is_due) continue;
-    const Result<bool> has_parted =
-        part_crossing_triangles(solid_, *following_, is_kept, is_cancelled_);
-    if (!has_parted) return failed_rung(has_parted.error());
-    is_due = *has_parted;
+    if (!is_due) {
+      const Result<bool> has_parted =
+          part_crossing_triangles(solid_, *following_, is_kept, is_cancelled_);
+      if (!has_parted) return failed_rung(has_parted.error());
+      is_due = *has_parted;
+    }
     if (!is_due) break;
+    if (round + 1 == kMostPartings) keep_bent_facets(solid_, is_kept);
   }
   const FollowingTriangles following = *std::exchange(following_, std::nullopt);
   std::vector<Index> missing;

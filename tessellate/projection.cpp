@@ -40,10 +40,11 @@ bool is_wide_enough(const Point& p) {
   return true;
 }
 
-/// The components of the exact doubled area vector of a ring, in lattice units.
-template <class Number>
-std::array<Number, 3> doubled_area(std::span<const Point> vertices, std::span<const Index> ring) {
-  std::array<Number, 3> area{Number(0), Number(0), Number(0)};
+/// Calls a function with an axis and the two products whose difference a vertex of a ring adds to
+/// the doubled area along it, in lattice units.
+template <class Number, class Function>
+void for_each_product(std::span<const Point> vertices, std::span<const Index> ring,
+                      const Function& function) {
   const Point& base = vertices[ring[0]];
   const std::array<Number, 3> origin{Number(base.x), Number(base.y), Number(base.z)};
   const auto relative = [&](Index vertex) {
@@ -57,10 +58,19 @@ std::array<Number, 3> doubled_area(std::span<const Point> vertices, std::span<co
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t u = (axis + 1) % 3;
       const std::size_t v = (axis + 2) % 3;
-      area[axis] += from[u] * to[v] - from[v] * to[u];
+      function(axis, Number(from[u] * to[v]), Number(from[v] * to[u]));
     }
     from = to;
   }
+}
+
+/// The components of the exact doubled area vector of a ring.
+template <class Number>
+std::array<Number, 3> doubled_area(std::span<const Point> vertices, std::span<const Index> ring) {
+  std::array<Number, 3> area{Number(0), Number(0), Number(0)};
+  for_each_product<Number>(
+      vertices, ring,
+      [&](std::size_t axis, const Number& one, const Number& other) { area[axis] += one - other; });
   return area;
 }
 
@@ -151,24 +161,10 @@ std::optional<Projection> filtered_projection(std::span<const Point> vertices,
                                               const std::array<double, 3>& weight) {
   std::array<double, 3> area{};
   std::array<double, 3> terms{};  // the sums of the terms' sizes
-  const Point& base = vertices[ring[0]];
-  const auto relative = [&](Index vertex) {
-    const Point& p = vertices[vertex];
-    return std::array<double, 3>{p.x - base.x, p.y - base.y, p.z - base.z};
-  };
-  std::array<double, 3> from = relative(ring[1]);
-  for (std::size_t i = 2; i < ring.size(); ++i) {
-    const std::array<double, 3> to = relative(ring[i]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t u = (axis + 1) % 3;
-      const std::size_t v = (axis + 2) % 3;
-      const double one = from[u] * to[v];
-      const double other = from[v] * to[u];
-      area[axis] += one - other;
-      terms[axis] += std::fabs(one) + std::fabs(other);
-    }
-    from = to;
-  }
+  for_each_product<double>(vertices, ring, [&](std::size_t axis, double one, double other) {
+    area[axis] += one - other;
+    terms[axis] += std::fabs(one) + std::fabs(other);
+  });
   // A term has at most four roundings, a sum one for each term; twice that covers the bound itself,
   // the weights and the products with them.
   const double error_of_term = 2 * (static_cast<double>(ring.size()) + 8) * kHalfUlp;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/intersection/triangle_reach.h"
 #include "geometry/intersection/triangle_triangle.h"
 #include "tessellate/facets.h"
 
@@ -42,14 +43,18 @@ bool ShellSurface::has_room_for(const Triangle& triangle) const {
     if (uses(from, to) + uses(to, from) > 1) return false;
   }
   const Box box = validate::box_of(triangle, solid_.vertices);
+  const geometry::TriangleReach reach(solid_.vertices[triangle[0]], solid_.vertices[triangle[1]],
+                                      solid_.vertices[triangle[2]]);
   bool is_free = true;
-  tree_.visit([&](const Box& other) { return is_free && other.overlaps(box); },
-              [&](Index item) {
-                const Triangle& other = triangles_[item];
-                if (!is_free || !validate::box_of(other, solid_.vertices).overlaps(box)) return;
-                is_free = !geometry::is_intersection(
-                    geometry::classify_contact(solid_.vertices, triangle, other));
-              });
+  const auto is_near = [&](const Box& other) {
+    return is_free && other.overlaps(box) && !reach.is_apart_from(other);
+  };
+  tree_.visit(is_near, [&](Index item) {
+    const Triangle& other = triangles_[item];
+    if (!is_near(validate::box_of(other, solid_.vertices))) return;
+    is_free =
+        !geometry::is_intersection(geometry::classify_contact(solid_.vertices, triangle, other));
+  });
   return is_free;
 }
 

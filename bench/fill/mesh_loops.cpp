@@ -3,11 +3,12 @@
 // Compares the best filling from Delaunay triangles with the best one from all triangles, on loops
 // of edges of a mesh, as section 4.2 of Zou, Ju and Carr 2013 does.
 //
-//   mesh_loops FILE LOOPS COUNT LEAST MOST [both]
+//   mesh_loops FILE LOOPS COUNT LEAST MOST [both] [round]
 //
 // Makes COUNT sets of LOOPS random loops of LEAST to MOST vertices, each the border of a disc of
-// triangles. With `both` the loops are curves that may be passed in both senses, as in the paper;
-// else they are borders of holes. Prints the share of sets with an area above 0.97 of the other's,
+// triangles that grows at random edges; with `round` as round as the mesh allows. With `both` the
+// loops are curves that may be passed in both senses, as in the paper; else they are borders of
+// holes. Prints the share of sets with an area above 0.97 of the other's,
 // and with an angle less than 5 and 10 degrees above the other's for each interior edge.
 #include <algorithm>
 #include <chrono>
@@ -67,7 +68,9 @@ int main(int argc, char** argv) {
   const std::size_t count = std::stoul(argv[3]);
   const std::size_t least = std::stoul(argv[4]);
   const std::size_t most = std::stoul(argv[5]);
-  const bool has_both_senses = argc > 6 && std::string_view(argv[6]) == "both";
+  const std::set<std::string_view> ways(argv + 6, argv + argc);
+  const bool has_both_senses = ways.contains("both");
+  const auto growth = ways.contains("round") ? bench::Growth::round : bench::Growth::ragged;
   test::Random random(2013);
   std::vector<Compared> results;
   std::size_t unfilled = 0;
@@ -77,7 +80,7 @@ int main(int argc, char** argv) {
     std::set<Index> taken;
     while (loops.size() < loop_count) {
       const auto loop =
-          bench::random_loop(mesh, least + random.below(most - least + 1), taken, random);
+          bench::random_loop(mesh, least + random.below(most - least + 1), taken, random, growth);
       if (!loop) continue;
       taken.insert(loop->begin(), loop->end());
       loops.push_back(*loop);

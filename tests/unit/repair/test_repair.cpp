@@ -258,6 +258,42 @@ TEST_CASE("a floor with hundreds of courts is one facet with as many rings") {
   CHECK(hash_of(result.after->certified->solid.solid()) == wanted);
 }
 
+/// A can without its lid, whose rim goes up and down; the edges of the rim are `count`.
+solids::Shell open_can(std::size_t count) {
+  std::vector<Point> low(count);
+  std::vector<Point> high(count);
+  const double radius = 50.0 * static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double turn = 2 * 3.141592653589793 * static_cast<double>(i) / static_cast<double>(count);
+    const double x = std::round(radius * std::cos(turn));
+    const double y = std::round(radius * std::sin(turn));
+    low[i] = {x, y, 0};
+    high[i] = {x, y, std::round(radius * (0.5 + 0.05 * std::sin(7 * turn)))};
+  }
+  solids::Shell shell;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t j = (i + 1) % count;
+    shell.push_back({{low[i], low[j], high[j]}});
+    shell.push_back({{low[i], high[j], high[i]}});
+  }
+  shell.push_back({std::vector<Point>(low.rbegin(), low.rend())});
+  return shell;
+}
+
+TEST_CASE("a wavy rim of very many edges is closed") {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr std::size_t kEdges = 10'000;
+#else
+  constexpr std::size_t kEdges = 100'000;
+#endif
+  const Solid solid = solids::solid_of({open_can(kEdges)}, solids::millimetres());
+  const Repaired result = repair(solid, nullptr, everything());
+  REQUIRE(result.outcome == Outcome::repaired);
+  REQUIRE(result.holes.size() == 1);
+  CHECK(result.holes[0].vertices == kEdges);
+  CHECK(result.holes[0].facets == kEdges - 2);
+}
+
 TEST_CASE("a strip with one side only stays as it is") {
   constexpr std::size_t kQuads = 12;
   solids::Shell strip;

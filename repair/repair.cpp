@@ -114,6 +114,7 @@ class Trial {
     if (!solid) return false;
     Inspection inspection = certify(*solid, workers_, options_.certify);
     if (!inspection.certified) {
+      if (undecided_reason_.empty()) undecided_reason_ = inspection.report.undecided_reason;
       tried_.push_back({std::move(work.solid), std::move(inspection.report)});
       return false;
     }
@@ -126,6 +127,8 @@ class Trial {
     repaired.holes = std::move(work.holes);
     return true;
   }
+
+  const std::string& undecided_reason() const { return undecided_reason_; }
 
   /// The holes of the first set with Remedy::fill.
   std::vector<HoleFill> first_holes() { return std::move(first_holes_); }
@@ -229,6 +232,7 @@ class Trial {
   std::map<std::tuple<double, bool, bool, bool>, Treated> with_fill_;
   std::vector<Tried> tried_;
   std::vector<HoleFill> first_holes_;
+  std::string undecided_reason_;  // of the first set that made an undecided solid
   delaunay::EngineWorkers* workers_;
   const RepairOptions& options_;
 };
@@ -356,6 +360,7 @@ Repaired repair(const Solid& solid, delaunay::EngineWorkers* workers,
   }
   if (repaired.outcome == Repaired::Outcome::repaired) return repaired;
   repaired.is_stopped = is_cancelled();
+  repaired.undecided_reason = trial.undecided_reason();
   repaired.holes = trial.first_holes();
   return repaired;
 }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -36,7 +37,10 @@ struct RepairOptions {
 struct Repaired {
   enum class Outcome : std::uint8_t { valid_as_read, repaired, not_repaired };
   Outcome outcome = Outcome::not_repaired;
-  bool is_stopped = false;           // cancelled before all sets of remedies were tried
+  bool is_stopped = false;  // cancelled before all sets of remedies were tried
+  /// Of a solid that is not repaired: why the first mended one that is undecided is not known to be
+  /// valid; empty if there is none.
+  std::string undecided_reason;
   validate::Report before;           // on the solid as it was submitted
   std::optional<Inspection> after;   // on the repaired solid; absent unless it was repaired
   std::optional<EditedSolid> edits;  // the facets of the repaired solid and where they came from

@@ -68,7 +68,10 @@ void count_facets(const Solid& submitted, const EditedSolid& edits, RepairSummar
 RepairSummary summary_of(const Solid& submitted, const Repaired& repaired) {
   RepairSummary summary;
   summary.outcome = repaired.outcome;
-  summary.is_undecided = repaired.is_stopped || repaired.before.verdict == Verdict::undecided;
+  summary.undecided_reason = repaired.undecided_reason.empty() ? repaired.before.undecided_reason
+                                                               : repaired.undecided_reason;
+  summary.is_undecided = repaired.is_stopped || repaired.before.verdict == Verdict::undecided ||
+                         !repaired.undecided_reason.empty();
   summary.codes_before = validate::error_codes(repaired.before.findings);
   summary.holes = repaired.holes;
   if (!repaired.edits) return summary;

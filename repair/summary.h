@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "repair/repair.h"
@@ -13,7 +14,10 @@ namespace watertight::repair {
 
 struct RepairSummary {
   Repaired::Outcome outcome = Repaired::Outcome::not_repaired;
-  bool is_undecided = false;       // the verdict on the submitted solid, or the repair was stopped
+  /// Not repaired, but not known to be impossible either: the submitted solid or a mended one is
+  /// undecided, or the repair was stopped.
+  bool is_undecided = false;
+  std::string undecided_reason;    // of the mended solid, or of the submitted one
   std::set<int> codes_before;      // the errors of the solid as it was submitted
   std::vector<Remedy> remedies;    // those that changed something
   std::size_t facets_added = 0;    // new ones, and parts of facets that were divided

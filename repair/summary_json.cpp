@@ -55,6 +55,9 @@ void write_hole(JsonText& json, const HoleFill& hole) {
 std::string summary_json(const RepairSummary& summary) {
   JsonText json;
   json.open('{').key("outcome").value(name_of(summary.outcome));
+  if (!is_repaired(summary) && !summary.undecided_reason.empty()) {
+    json.key("undecided_reason").value(summary.undecided_reason);
+  }
   json.key("remedies").open('[');
   for (const Remedy remedy : summary.remedies) json.value(to_string(remedy));
   json.close(']').key("codes_before").open('[');

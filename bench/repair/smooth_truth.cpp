@@ -4,7 +4,9 @@
 // old vertices (`fill`), with smooth patches (`smooth`), and by CGAL's
 // triangulate_refine_and_fair_hole. The surface that was cut out is the truth.
 //
-//   smooth_truth DISCS [--density D] [--chord M] [--collar N] [--crease DEG] [--details 1] FILE...
+//   smooth_truth DISCS [--density D] [--chord M] [--collar N] [--crease DEG] [--cgal-density D]
+//   [--details 1]
+//     FILE...
 //
 // DISCS are cut out of each mesh, of 20 to 400 facets, as many at once as keep apart. Prints for
 // each mesh and all together: the verdict of the exact tests, holes without a smooth patch by
@@ -252,6 +254,7 @@ struct Sums {
 
 struct Outcome {
   bool has_details = false;
+  double cgal_density = 1.4142135623730951;  // CGAL's own default; more gives more vertices
   std::vector<double> areas;
   Sums cut, fill, smooth, cgal;
   std::map<std::string, std::size_t> refusals;
@@ -368,7 +371,8 @@ class Trial {
       processing::triangulate_refine_and_fair_hole(
           mesh, border,
           CGAL::parameters::face_output_iterator(std::back_inserter(made))
-              .vertex_output_iterator(std::back_inserter(added)));
+              .vertex_output_iterator(std::back_inserter(added))
+              .density_control_factor(outcome.cgal_density));
       outcome.cgal.seconds += seconds_since(start);
       outcome.cgal.vertices += added.size();
       std::vector<Triangle> triangles;
@@ -445,14 +449,15 @@ int main(int argc, char** argv) {
   if (argc < 3) return 2;
   const std::size_t discs = std::stoul(argv[1]);
   repair::SmoothOptions smooth;
-  bool has_details = false;
+  Outcome settings;
   int first = 2;
   for (; first + 1 < argc && argv[first][0] == '-'; first += 2) {
     const std::string name = argv[first];
     if (name == "--density") smooth.density = std::stod(argv[first + 1]);
     if (name == "--chord") smooth.chord_metres = std::stod(argv[first + 1]);
     if (name == "--collar") smooth.collar.rings = std::stoi(argv[first + 1]);
-    if (name == "--details") has_details = true;
+    if (name == "--details") settings.has_details = true;
+    if (name == "--cgal-density") settings.cgal_density = std::stod(argv[first + 1]);
     if (name == "--crease") smooth.collar.crease_degrees = std::stod(argv[first + 1]);
   }
   Outcome all;
@@ -461,8 +466,7 @@ int main(int argc, char** argv) {
     if (!mesh) return 1;
     test::Random random(71);
     Cutter cutter(*mesh, random);
-    Outcome own;
-    own.has_details = has_details;
+    Outcome own = settings;
     while (own.fill.discs < discs) {
       const Trial trial(*mesh, cutter.cut(discs - own.fill.discs), own.fill.discs);
       const std::size_t before = own.fill.discs;
@@ -473,7 +477,7 @@ int main(int argc, char** argv) {
       if (own.fill.discs == before) break;
     }
     own.print(argv[i]);
-    for (std::size_t disc = 0; has_details && disc < own.smooth.of_discs.size(); ++disc) {
+    for (std::size_t disc = 0; own.has_details && disc < own.smooth.of_discs.size(); ++disc) {
       std::printf("  disc %3zu (area %.5f): fill %.5f smooth %.5f CGAL %.5f\n", disc,
                   own.areas[disc], own.fill.of_discs[disc], own.smooth.of_discs[disc],
                   own.cgal.of_discs[disc]);

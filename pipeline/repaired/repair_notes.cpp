@@ -110,7 +110,11 @@ std::string account_of(const repair::RepairSummary& summary) {
     for (const int code : summary.codes_before) {
       add(std::to_string(code) + ' ' + std::string(validate::finding_name(code)), ", ");
     }
-    if (summary.is_undecided) return text.empty() ? "undecided" : "undecided: " + text;
+    if (summary.is_undecided) {
+      if (!summary.undecided_reason.empty())
+        add(summary.undecided_reason, "; mended, but not proven: ");
+      return text.empty() ? "undecided" : "undecided: " + text;
+    }
     return "not repaired: " + text;
   }
   for (const repair::Remedy remedy : summary.remedies) add(std::string(to_string(remedy)), ", ");

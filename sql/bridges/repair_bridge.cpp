@@ -37,10 +37,14 @@ std::optional<RepairedInput> repaired(const wt_job& job, const wt_repair_choice&
   options.certify.rounded = submitted->rounded;
   repair::Repaired result = repair::repair(submitted->solid, workers_of(job), options);
   if (const Status in_time = call.check(); !in_time) return refused(in_time.error());
-  const bool is_undecided = result.outcome == repair::Repaired::Outcome::not_repaired &&
-                            result.before.verdict == Verdict::undecided;
+  const bool is_undecided =
+      result.outcome == repair::Repaired::Outcome::not_repaired &&
+      (result.before.verdict == Verdict::undecided || !result.undecided_reason.empty());
   if (is_undecided) {
-    fail(reply, WATERTIGHT_UNDECIDED, "the solid is undecided: " + result.before.undecided_reason);
+    const std::string reason = result.undecided_reason.empty()
+                                   ? "the solid is undecided: " + result.before.undecided_reason
+                                   : "the mended solid is undecided: " + result.undecided_reason;
+    fail(reply, WATERTIGHT_UNDECIDED, reason);
     return std::nullopt;
   }
   return RepairedInput{std::move(submitted->solid), std::move(result)};

@@ -294,6 +294,22 @@ TEST_CASE("a wavy rim of very many edges is closed") {
   CHECK(result.holes[0].facets == kEdges - 2);
 }
 
+TEST_CASE("a solid whose mended form is not proven is undecided, with the reason") {
+  RepairOptions options = everything();
+  options.certify.proof = Proof::tetrahedralization;
+  options.certify.ladder.last_rung = delaunay::Rung::delaunay;
+  const Solid solid = solids::solid_of({open_can(40)}, solids::millimetres());
+  const Repaired result = repair(solid, nullptr, options);
+  CHECK(result.outcome == Outcome::not_repaired);
+  CHECK(result.before.verdict == Verdict::invalid);
+  CHECK(!result.undecided_reason.empty());
+  const RepairSummary summary = summary_of(solid, result);
+  CHECK(summary.is_undecided);
+  CHECK(summary_json(summary).find("\"undecided_reason\":\"") != std::string::npos);
+  options.certify.ladder.last_rung = delaunay::Rung::recovered;
+  CHECK(repair(solid, nullptr, options).outcome == Outcome::repaired);
+}
+
 TEST_CASE("a strip with one side only stays as it is") {
   constexpr std::size_t kQuads = 12;
   solids::Shell strip;

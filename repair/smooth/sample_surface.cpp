@@ -2,6 +2,7 @@
 #include "repair/smooth/sample_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -14,11 +15,14 @@
 namespace watertight::repair {
 namespace {
 
+using geometry::operator+;
 using geometry::operator-;
+using geometry::operator*;
 using geometry::Vector3;
 using Edge = std::pair<Index, Index>;
 
 constexpr int kMostRounds = 8;  // of halving edges
+constexpr std::size_t kBulgeParts = 8;
 
 Edge edge_of(Index a, Index b) { return std::minmax(a, b); }
 Vector3 vector_of(const Point& p) { return {p.x, p.y, p.z}; }
@@ -152,8 +156,12 @@ class Sampler {
     const auto spread =
         spline::spread_inward(differences, samples_.places.size(), samples_.triangles);
     if (!spread) return spread.error();
-    for (std::size_t i = hole_.border.size(); i < samples_.places.size(); ++i)
-      patch_.new_vertices.push_back(vector_of(samples_.values[i].value) - vector_of((*spread)[i]));
+    const std::vector<Bulge> bulges = border_bulges();
+    for (std::size_t i = hole_.border.size(); i < samples_.places.size(); ++i) {
+      Vector3 at = vector_of(samples_.values[i].value) - vector_of((*spread)[i]);
+      for (const Bulge& bulge : bulges) at = at - bulge.at(samples_.places[i]);
+      patch_.new_vertices.push_back(at);
+    }
     patch_.triangles = std::move(samples_.triangles);
     return Done{};
   }
@@ -175,6 +183,57 @@ class Sampler {
   }
 
  private:
+  /// The way of the surface along an edge of the border from the straight edge.
+  struct Bulge {
+    Point from;
+    Point to;
+    std::array<Vector3, kBulgeParts + 1> ways{};  // at equal steps, 0 at both ends
+
+    Point place(std::size_t step) const {
+      const double t = static_cast<double>(step) / kBulgeParts;
+      return {from.x * (1 - t) + to.x * t, from.y * (1 - t) + to.y * t, 0};
+    }
+
+    /// What it adds at a place: all of it on the edge, less away from it, nothing at its length.
+    Vector3 at(const Point& place) const {
+      const Vector3 along = geometry::difference(to, from);
+      const Vector3 seen = geometry::difference(place, from);
+      const double squared = geometry::dot(along, along);
+      const double t = std::clamp(geometry::dot(seen, along) / squared, 0.0, 1.0);
+      const double away = geometry::length(seen - along * t) / std::sqrt(squared);
+      if (!(away < 1)) return {};
+      const double step = t * kBulgeParts;
+      const auto part = std::min(static_cast<std::size_t>(step), kBulgeParts - 1);
+      const double rest = step - static_cast<double>(part);
+      const Vector3 way = ways[part] * (1 - rest) + ways[part + 1] * rest;
+      return way * ((1 - away) * (1 - away));
+    }
+  };
+
+  std::vector<Bulge> border_bulges() const {
+    std::map<Edge, int> uses;
+    for (const Triangle& t : samples_.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) ++uses[edge_of(t[i], t[(i + 1) % 3])];
+    }
+    std::vector<Bulge> bulges;
+    for (const auto& [edge, count] : uses) {
+      if (count > 1) continue;
+      Bulge bulge{samples_.places[edge.first], samples_.places[edge.second]};
+      std::vector<Point> places;
+      for (std::size_t i = 1; i < kBulgeParts; ++i) places.push_back(bulge.place(i));
+      const auto values = hole_.surface.values(places);
+      for (std::size_t i = 1; i < kBulgeParts; ++i) {
+        if (!values[i - 1]) continue;
+        const double t = static_cast<double>(i) / kBulgeParts;
+        bulge.ways[i] = vector_of(values[i - 1]->value) -
+                        (vector_of(samples_.values[edge.first].value) * (1 - t) +
+                         vector_of(samples_.values[edge.second].value) * t);
+      }
+      bulges.push_back(bulge);
+    }
+    return bulges;
+  }
+
   static Vector3 normal_of(const spline::SurfacePoint& at) {
     return geometry::cross(vector_of(at.first[0]), vector_of(at.first[1]));
   }

@@ -21,8 +21,8 @@ using geometry::operator*;
 using geometry::Vector3;
 using Edge = std::pair<Index, Index>;
 
-constexpr int kMostRounds = 8;  // of halving edges
-constexpr std::size_t kBulgeParts = 8;
+constexpr int kMostRounds = 8;          // of halving edges
+constexpr std::size_t kBulgeParts = 8;  // of an edge of the border, at which the surface is known
 
 Edge edge_of(Index a, Index b) { return std::minmax(a, b); }
 Vector3 vector_of(const Point& p) { return {p.x, p.y, p.z}; }

@@ -22,9 +22,11 @@ struct SampledHole {
 
 /// Samples the surface at new vertices of the domain and, where an inner edge is more than
 /// `chord_metres` from the surface in its middle, there too, round by round. The border
-/// keeps its vertices; what the surface differs from them is spread inward. Fills new vertices,
-/// triangles and measures of the patch. Cost: linear in samples and a sparse Cholesky
-/// factorization.
+/// keeps its vertices and its straight edges: what the surface differs from the vertices is spread
+/// inward, and beside an edge the way from the edge to the surface's curve over it is taken off,
+/// less of it with the distance, so that a patch with many vertices does not lie across its border.
+/// Fills new vertices, triangles and measures of the patch. Cost: linear in samples times edges of
+/// the border, and a sparse Cholesky factorization.
 std::optional<Refused> sample(const SampledHole& hole, double chord_metres,
                               std::size_t most_vertices, SmoothPatch& patch);
 

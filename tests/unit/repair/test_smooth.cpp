@@ -132,6 +132,21 @@ TEST_CASE("old vertices keep their exact places, and the lattice gets finer for 
   CHECK(sources.size() == open.facet_count() + 1);
 }
 
+TEST_CASE("a patch may have vertices much closer than its border has, and does not cross it") {
+  // The surface bends over each of the few edges of the border, which stay straight.
+  const Shell shell = without_top(ball(9, 8, 0.2, 3), 300);
+  const Solid open = solids::solid_of({shell}, solids::millimetres());
+  RepairOptions options = smoothly();
+  options.smooth.collar.crease_degrees = 90;
+  options.smooth.chord_metres = kRadius * 1e-3 / 4000;
+  const Repaired repaired = repair(open, nullptr, options);
+  REQUIRE(repaired.outcome == Outcome::repaired);
+  const HoleFill& hole = only_hole(repaired);
+  CHECK(hole.smooth_refusal.empty());
+  REQUIRE(hole.smooth);
+  CHECK(hole.smooth->vertices > 1000);
+}
+
 TEST_CASE("a hole in a plane gets a plane") {
   // A slab of squares as triangles, with a hole of 4 x 4 squares in its upper side.
   Shell slab;

@@ -13,6 +13,7 @@
 #include "formats/gml/gml.h"
 #include "formats/gml/written/city_gml.h"
 #include "formats/json_fg.h"
+#include "formats/mesh/mesh_places.h"
 #include "formats/mesh/mesh_text.h"
 #include "formats/text/kept_text.h"
 #include "formats/text/ring_search.h"
@@ -102,6 +103,9 @@ void keep_bytes(ByteView bytes, Document& document) {
   }
   const bool is_stl = document.format == Format::stl;
   const auto solids = solids_of(document);
+  if (const auto places = indexed_places(bytes, document.format)) {
+    if (auto form = keep_with_indices(bytes, *places, solids)) forms.push_back(*std::move(form));
+  }
   if (is_stl && is_binary_stl(bytes)) {
     forms.push_back(keep_with_rings(bytes, binary_stl_rings(bytes), solids));
   } else if (document.format != Format::ewkb && !is_curved(document.format)) {

@@ -10,13 +10,20 @@
 #include <vector>
 
 #include "base/checksum.h"
+#include "formats/text/indexed_text.h"
 #include "formats/text/number_style.h"
 #include "formats/text/text_layout.h"
 
 namespace watertight::formats {
 namespace {
 
-enum class Kind : std::uint8_t { whole = 0, rings = 1, written = 2, written_with_layout = 3 };
+enum class Kind : std::uint8_t {
+  whole = 0,
+  rings = 1,
+  written = 2,
+  written_with_layout = 3,
+  indices = 4
+};
 
 /// The bytes that stand for positions in the kept text.
 constexpr char kWholeRing = 1;      // all positions of the next ring
@@ -397,6 +404,11 @@ Result<Bytes> bytes_of_kind(Kind kind, ByteReader& reader, DocumentSolids solids
       if (!text) return text.error();
       return Bytes(text->begin(), text->end());
     }
+    case Kind::indices: {
+      const auto text = text_of_indexed_form(reader.take(reader.remaining()), solids, size);
+      if (!text) return text.error();
+      return Bytes(text->begin(), text->end());
+    }
     case Kind::whole:
       break;
   }
@@ -436,6 +448,13 @@ Bytes keep_as_written(ByteView bytes, ByteView written) {
   return with_head(Kind::written_with_layout, bytes, layout);
 }
 
+std::optional<Bytes> keep_with_indices(ByteView bytes, const IndexedPlaces& places,
+                                       DocumentSolids solids) {
+  const auto form = indexed_form(as_text(bytes), places, solids);
+  if (!form) return std::nullopt;
+  return with_head(Kind::indices, bytes, *form);
+}
+
 Bytes keep_whole(ByteView bytes) { return with_head(Kind::whole, bytes, bytes); }
 
 bool needs_written(ByteView kept) {
@@ -450,7 +469,7 @@ Result<Bytes> restored_bytes(ByteView kept, DocumentSolids solids, ByteView writ
   const std::uint8_t kind = reader.u8();
   const std::uint64_t hash = reader.u64();
   const std::uint64_t size = reader.varint();
-  if (reader.failed() || kind > static_cast<std::uint8_t>(Kind::written_with_layout)) {
+  if (reader.failed() || kind > static_cast<std::uint8_t>(Kind::indices)) {
     return does_not_fit();
   }
   if (size > most_bytes) {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,8 @@
 #include "geometry/solid.h"
 
 namespace watertight::formats {
+
+struct IndexedPlaces;
 
 /// Bytes of a document that hold the positions of a ring of a solid, or one of them.
 struct RingText {
@@ -45,6 +48,11 @@ Bytes keep_with_rings(ByteView bytes, std::span<const RingText> rings, DocumentS
 
 /// The kept form of bytes that resemble `written`, which write_document() gives for the document.
 Bytes keep_as_written(ByteView bytes, ByteView written);
+
+/// The kept form of the text of an indexed mesh (formats/text/indexed_text.h); nothing if the
+/// corners of the text are not those of the solids.
+std::optional<Bytes> keep_with_indices(ByteView bytes, const IndexedPlaces& places,
+                                       DocumentSolids solids);
 
 /// The kept form of bytes alone.
 Bytes keep_whole(ByteView bytes);

@@ -215,29 +215,11 @@ class IndexedWriter {
     kept_ += kVertexMark;
     order_.zigzag(static_cast<std::int64_t>(point) - static_cast<std::int64_t>(predictions_.point));
     for (std::size_t i = 0; i < 3 && !places_.is_binary; ++i) {
-      if (i > 0) add_gap(vertex->gaps[i - 1]);
-      add_number(mesh_.coordinate(point, static_cast<int>(i)), i, vertex->numbers[i]);
+      if (i > 0) add_likely(gaps_, predictions_.gap, vertex->gaps[i - 1]);
+      add_number(numbers_, predictions_.styles[i], mesh_.coordinate(point, static_cast<int>(i)),
+                 vertex->numbers[i]);
     }
     predictions_.use_vertex(point);
-  }
-
-  void add_gap(std::string_view text) {
-    if (text == predictions_.gap) {
-      gaps_.expected();
-      return;
-    }
-    gaps_.exception(text);
-    predictions_.gap = text;
-  }
-
-  void add_number(const VertexCoordinate& coordinate, std::size_t axis, std::string_view text) {
-    NumberStyle& style = predictions_.styles[axis];
-    if (style.print(coordinate) == text) {
-      numbers_.expected();
-      return;
-    }
-    numbers_.exception(text);
-    style.learn(coordinate, text);
   }
 
   void corner(std::string_view digits) {
@@ -270,20 +252,15 @@ class IndexedWriter {
   ExceptionWriter numbers_;
 };
 
-ByteView take_bytes(ByteReader& reader) {
-  const std::uint64_t size = reader.varint();
-  return reader.take(static_cast<std::size_t>(std::min<std::uint64_t>(size, SIZE_MAX)));
-}
-
 class IndexedReader {
  public:
   IndexedReader(ByteReader& bytes, DocumentSolids solids, std::uint64_t most_bytes)
       : mesh_(solids),
         head_(bytes.varint()),
         predictions_(head_ / 2, head_ % 2 == 1, mesh_.point_count()),
-        order_(take_bytes(bytes)),
-        gaps_(take_bytes(bytes)),
-        numbers_(take_bytes(bytes)),
+        order_(take_list(bytes)),
+        gaps_(take_list(bytes)),
+        numbers_(take_list(bytes)),
         kept_(as_text(bytes.take(bytes.remaining()))),
         is_readable_(!bytes.failed()),
         most_bytes_(most_bytes) {}
@@ -328,28 +305,12 @@ class IndexedReader {
     if (order_.failed() || point >= mesh_.point_count()) return false;
     if (predictions_.is_binary) text_ += floats_of_point(mesh_, point);
     for (std::size_t i = 0; i < 3 && !predictions_.is_binary; ++i) {
-      if (i > 0) take_gap();
-      take_number(mesh_.coordinate(point, static_cast<int>(i)), i);
+      if (i > 0) append_likely(gaps_, predictions_.gap, text_);
+      append_number(numbers_, predictions_.styles[i], mesh_.coordinate(point, static_cast<int>(i)),
+                    text_);
     }
     predictions_.use_vertex(point);
     return true;
-  }
-
-  void take_gap() {
-    std::string_view exception;
-    if (gaps_.next(exception)) predictions_.gap = exception;
-    text_ += predictions_.gap;
-  }
-
-  void take_number(const VertexCoordinate& coordinate, std::size_t axis) {
-    NumberStyle& style = predictions_.styles[axis];
-    std::string_view exception;
-    if (!numbers_.next(exception)) {
-      text_ += style.print(coordinate);
-      return;
-    }
-    style.learn(coordinate, exception);
-    text_ += exception;
   }
 
   bool take_corner(bool is_likely) {

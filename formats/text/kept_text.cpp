@@ -170,11 +170,12 @@ class Writer {
       return;
     }
     for (std::size_t i = 0; i < count; ++i) {
-      add_gap(gap_before(i), numbers[i].gap);
-      add_number(i % 3, numbers[i].text);
+      add_likely(gaps_, predictions_.gap(gap_before(i)), numbers[i].gap);
+      add_number(numbers_, predictions_.style(i % 3), predictions_.coordinate(i % 3),
+                 numbers[i].text);
       if (i % 3 == 2) predictions_.advance();
     }
-    add_gap(Gap::after_last, numbers.back().gap);
+    add_likely(gaps_, predictions_.gap(Gap::after_last), numbers.back().gap);
   }
 
   Bytes finish() && {
@@ -244,27 +245,6 @@ class Writer {
     predictions_.use_ring(form);
   }
 
-  void add_gap(Gap gap, std::string_view text) {
-    std::string& likely = predictions_.gap(gap);
-    if (text == likely) {
-      gaps_.expected();
-      return;
-    }
-    gaps_.exception(text);
-    likely = text;
-  }
-
-  void add_number(std::size_t place, std::string_view text) {
-    const VertexCoordinate coordinate = predictions_.coordinate(place);
-    NumberStyle& style = predictions_.style(place);
-    if (style.print(coordinate) == text) {
-      numbers_.expected();
-      return;
-    }
-    numbers_.exception(text);
-    style.learn(coordinate, text);
-  }
-
   std::string_view source_;
   Predictions predictions_;
   std::string kept_;
@@ -275,11 +255,6 @@ class Writer {
 
 Error does_not_fit() {
   return Error{ErrorCode::malformed, "the text of the document and its solids do not fit"};
-}
-
-ByteView take_list(ByteReader& reader) {
-  const std::uint64_t size = reader.varint();
-  return reader.take(static_cast<std::size_t>(std::min<std::uint64_t>(size, SIZE_MAX)));
 }
 
 class Reader {
@@ -342,32 +317,13 @@ class Reader {
 
   bool take_positions(std::size_t count) {
     for (std::size_t i = 0; i < 3 * count; ++i) {
-      take_gap(gap_before(i));
-      take_number(i % 3);
+      append_likely(gaps_, predictions_.gap(gap_before(i)), text_);
+      append_number(numbers_, predictions_.style(i % 3), predictions_.coordinate(i % 3), text_);
       if (i % 3 == 2) predictions_.advance();
       if (text_.size() > size_) return false;
     }
-    take_gap(Gap::after_last);
+    append_likely(gaps_, predictions_.gap(Gap::after_last), text_);
     return true;
-  }
-
-  void take_gap(Gap gap) {
-    std::string& likely = predictions_.gap(gap);
-    std::string_view exception;
-    if (gaps_.next(exception)) likely = exception;
-    text_ += likely;
-  }
-
-  void take_number(std::size_t place) {
-    const VertexCoordinate coordinate = predictions_.coordinate(place);
-    NumberStyle& style = predictions_.style(place);
-    std::string_view exception;
-    if (!numbers_.next(exception)) {
-      text_ += style.print(coordinate);
-      return;
-    }
-    style.learn(coordinate, exception);
-    text_ += exception;
   }
 
   Predictions predictions_;

@@ -90,4 +90,40 @@ void NumberStyle::learn(const VertexCoordinate& coordinate, std::string_view tex
   }
 }
 
+void add_number(ExceptionWriter& numbers, NumberStyle& style, const VertexCoordinate& coordinate,
+                std::string_view text) {
+  if (style.print(coordinate) == text) {
+    numbers.expected();
+    return;
+  }
+  numbers.exception(text);
+  style.learn(coordinate, text);
+}
+
+void append_number(ExceptionReader& numbers, NumberStyle& style, const VertexCoordinate& coordinate,
+                   std::string& text) {
+  std::string_view exception;
+  if (!numbers.next(exception)) {
+    text += style.print(coordinate);
+    return;
+  }
+  style.learn(coordinate, exception);
+  text += exception;
+}
+
+void add_likely(ExceptionWriter& texts, std::string& last, std::string_view text) {
+  if (text == last) {
+    texts.expected();
+    return;
+  }
+  texts.exception(text);
+  last = text;
+}
+
+void append_likely(ExceptionReader& texts, std::string& last, std::string& text) {
+  std::string_view exception;
+  if (texts.next(exception)) last = exception;
+  text += last;
+}
+
 }  // namespace watertight::formats

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "formats/text/text_layout.h"
 #include "geometry/solid.h"
 
 namespace watertight::formats {
@@ -42,5 +43,19 @@ class NumberStyle {
   Form form_ = Form::exact;
   std::size_t digits_ = 0;
 };
+
+/// Writes the text of a coordinate, which is expected to be that of the style; the style learns.
+void add_number(ExceptionWriter& numbers, NumberStyle& style, const VertexCoordinate& coordinate,
+                std::string_view text);
+
+/// Appends what add_number() wrote.
+void append_number(ExceptionReader& numbers, NumberStyle& style, const VertexCoordinate& coordinate,
+                   std::string& text);
+
+/// Writes a text that is expected to be the last one of its kind, which it replaces.
+void add_likely(ExceptionWriter& texts, std::string& last, std::string_view text);
+
+/// Appends what add_likely() wrote.
+void append_likely(ExceptionReader& texts, std::string& last, std::string& text);
 
 }  // namespace watertight::formats

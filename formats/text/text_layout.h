@@ -11,6 +11,7 @@
 // style, and it is exact for every text.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -61,6 +62,12 @@ class ExceptionReader {
   std::uint64_t run_ = 0;
   bool is_last_run_ = false;
 };
+
+/// The bytes that follow their number (varint); fewer if there are fewer, which fails the reader.
+inline ByteView take_list(ByteReader& reader) {
+  const std::uint64_t size = reader.varint();
+  return reader.take(static_cast<std::size_t>(std::min<std::uint64_t>(size, SIZE_MAX)));
+}
 
 /// Writes the bytes before, between and after the lines of a text. The reader expects one line feed
 /// after each line.

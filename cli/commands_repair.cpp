@@ -56,7 +56,7 @@ void print_table(const DocumentRepair& outcome) {
     repaired += repair.is_repaired() ? 1 : 0;
     undecided += !repair.is_repaired() && repair.summary.is_undecided ? 1 : 0;
     for (const Remedy remedy : repair.summary.remedies) ++by_remedy[remedy];
-    if (repair.is_repaired()) continue;
+    if (repair.is_repaired() || repair.summary.is_undecided) continue;
     for (const int code : repair.summary.codes_before) ++by_code[code];
   }
   print_row("features", outcome.features);

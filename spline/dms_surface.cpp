@@ -176,4 +176,14 @@ std::optional<Point> DmsSurface::second_derivative(const Point& u, const Point& 
       std::array{first.x * second.x, first.x * second.y + first.y * second.x, first.y * second.y});
 }
 
+double gaussian_curvature(const SurfacePoint& at) {
+  const auto dot = [](const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
+  const auto& [du, dv] = at.first;
+  const Point normal{du.y * dv.z - du.z * dv.y, du.z * dv.x - du.x * dv.z,
+                     du.x * dv.y - du.y * dv.x};
+  const double area = dot(normal, normal);  // squared
+  const double mixed = dot(at.second[1], normal);
+  return (dot(at.second[0], normal) * dot(at.second[2], normal) - mixed * mixed) / (area * area);
+}
+
 }  // namespace watertight::spline

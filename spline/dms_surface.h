@@ -69,6 +69,10 @@ struct SurfacePoint {
   std::array<Point, 3> second{};  // by xx, xy, yy
 };
 
+/// The Gaussian curvature at a point with its derivatives, one over the square of the unit of
+/// values; infinite or no number where the first derivatives are on one line.
+double gaussian_curvature(const SurfacePoint& at);
+
 class DmsSurface {
  public:
   /// Error malformed if there is not one finite coefficient for each function. The domain must

@@ -65,7 +65,7 @@ std::array<double, 3> curvature_in(const samples::Scene& scene,
       middle.x += scene.arrays().vertices[v].x / 3;
       middle.y += scene.arrays().vertices[v].y / 3;
     }
-    const double curvature = samples::gaussian_curvature(
+    const double curvature = spline::gaussian_curvature(
         spline::sum_of(evaluator.in_triangle(t, middle, 2), scene.coefficients()));
     result[0] = std::min(result[0], curvature);
     result[1] += curvature / static_cast<double>(triangles.size());

@@ -171,7 +171,7 @@ class Sampler {
     measures.vertices = patch_.new_vertices.size();
     bool is_first = true;
     for (std::size_t i = hole_.border.size(); i < samples_.values.size(); ++i) {
-      const double curvature = gaussian_curvature(samples_.values[i]);
+      const double curvature = spline::gaussian_curvature(samples_.values[i]);
       if (!std::isfinite(curvature)) continue;
       measures.least_curvature =
           is_first ? curvature : std::min(measures.least_curvature, curvature);
@@ -236,16 +236,6 @@ class Sampler {
 
   static Vector3 normal_of(const spline::SurfacePoint& at) {
     return geometry::cross(vector_of(at.first[0]), vector_of(at.first[1]));
-  }
-
-  static double gaussian_curvature(const spline::SurfacePoint& at) {
-    const Vector3 normal = normal_of(at);
-    const double area = geometry::dot(normal, normal);  // squared
-    const double mixed = geometry::dot(vector_of(at.second[1]), normal);
-    return (geometry::dot(vector_of(at.second[0]), normal) *
-                geometry::dot(vector_of(at.second[2]), normal) -
-            mixed * mixed) /
-           (area * area);
   }
 
   /// The surface as the limit from both sides in the middle of the border's edges.

@@ -497,15 +497,4 @@ Jumps jumps_of(const Scene& scene) {
   return jumps;
 }
 
-double gaussian_curvature(const spline::SurfacePoint& at) {
-  const auto dot = [](const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
-  const auto& [du, dv] = at.first;
-  const Point normal{du.y * dv.z - du.z * dv.y, du.z * dv.x - du.x * dv.z,
-                     du.x * dv.y - du.y * dv.x};
-  const double area = dot(normal, normal);  // squared
-  return (dot(at.second[0], normal) * dot(at.second[2], normal) -
-          dot(at.second[1], normal) * dot(at.second[1], normal)) /
-         (area * area);
-}
-
 }  // namespace watertight::samples

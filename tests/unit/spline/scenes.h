@@ -100,7 +100,4 @@ struct Jumps {
 };
 Jumps jumps_of(const Scene& scene);
 
-/// The Gaussian curvature at a point.
-double gaussian_curvature(const spline::SurfacePoint& at);
-
 }  // namespace watertight::samples

@@ -78,18 +78,6 @@ TEST_CASE("points that do not determine a surface are refused") {
         "the points do not determine the surface: some functions have too few of them");
 }
 
-/// The Gaussian curvature of a surface at a point.
-double curvature_at(const spline::SurfacePoint& at) {
-  const auto dot = [](const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
-  const auto& [du, dv] = at.first;
-  const Point normal{du.y * dv.z - du.z * dv.y, du.z * dv.x - du.x * dv.z,
-                     du.x * dv.y - du.y * dv.x};
-  const double area = dot(normal, normal);  // squared
-  return (dot(at.second[0], normal) * dot(at.second[2], normal) -
-          dot(at.second[1], normal) * dot(at.second[1], normal)) /
-         (area * area);
-}
-
 TEST_CASE("a truncated cone gets a rounded cap that goes on as the cone does") {
   const auto circle = [](int edges, double radius) {
     std::vector<Point> polygon;
@@ -149,7 +137,8 @@ TEST_CASE("a truncated cone gets a rounded cap that goes on as the cone does") {
   for (int i = -4; i <= 4; ++i) {
     for (int j = -4; j <= 4; ++j) places.push_back({0.1 * i, 0.1 * j, 0});
   }
-  for (const auto& found : surface->values(places, 2)) CHECK(curvature_at(*found) > 0.1);
+  for (const auto& found : surface->values(places, 2))
+    CHECK(spline::gaussian_curvature(*found) > 0.1);
   // On the old region the surface is what it was.
   const auto before = spline::DmsSurface::make(*old, fitted->coefficients);
   samples::Numbers numbers(5);

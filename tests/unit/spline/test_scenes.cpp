@@ -57,7 +57,7 @@ std::vector<double> curvatures(const ClosedScene& closed, const std::vector<Poin
   std::vector<double> found;
   for (const auto& at : surface->values(places, 2)) {
     REQUIRE(at);
-    found.push_back(samples::gaussian_curvature(*at));
+    found.push_back(spline::gaussian_curvature(*at));
   }
   return found;
 }

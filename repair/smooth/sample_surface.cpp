@@ -113,13 +113,9 @@ class Sampler {
 
   /// Halves inner edges that are too far from the surface. False if there is none.
   bool refine(double chord) {
-    std::map<Edge, int> uses;
-    for (const Triangle& t : samples_.triangles) {
-      for (std::size_t i = 0; i < 3; ++i) ++uses[edge_of(t[i], t[(i + 1) % 3])];
-    }
     std::vector<Edge> inner;
     std::vector<Point> middles;
-    for (const auto& [edge, count] : uses) {
+    for (const auto& [edge, count] : edge_uses()) {
       if (count < 2) continue;
       inner.push_back(edge);
       middles.push_back(middle_of(samples_.places[edge.first], samples_.places[edge.second]));
@@ -183,6 +179,15 @@ class Sampler {
   }
 
  private:
+  /// How many triangles have each edge: one at the border, else two.
+  std::map<Edge, int> edge_uses() const {
+    std::map<Edge, int> uses;
+    for (const Triangle& t : samples_.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) ++uses[edge_of(t[i], t[(i + 1) % 3])];
+    }
+    return uses;
+  }
+
   /// The way of the surface along an edge of the border from the straight edge.
   struct Bulge {
     Point from;
@@ -211,12 +216,8 @@ class Sampler {
   };
 
   std::vector<Bulge> border_bulges() const {
-    std::map<Edge, int> uses;
-    for (const Triangle& t : samples_.triangles) {
-      for (std::size_t i = 0; i < 3; ++i) ++uses[edge_of(t[i], t[(i + 1) % 3])];
-    }
     std::vector<Bulge> bulges;
-    for (const auto& [edge, count] : uses) {
+    for (const auto& [edge, count] : edge_uses()) {
       if (count > 1) continue;
       Bulge bulge{samples_.places[edge.first], samples_.places[edge.second]};
       std::vector<Point> places;

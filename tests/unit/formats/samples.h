@@ -56,4 +56,24 @@ inline const std::string kTwoBuildings =
     R"("vertices":[[0,0,0],[1000,0,0],[0,1000,0],[0,0,1000],[5000,0,0],[6000,0,0],[5000,1000,0],)"
     R"([99,98,97],[1,2,3]]})";
 
+/// Truncated kept forms of a document are errors, and forms with a changed bit are errors or give
+/// the text.
+inline void check_damaged_framing(Document document, std::string_view text) {
+  const Bytes framing = document.framing;
+  for (std::size_t size = 1; size < framing.size(); ++size) {
+    document.framing.assign(framing.begin(), framing.begin() + static_cast<std::ptrdiff_t>(size));
+    const auto result = formats::write_document(document, document.format);
+    REQUIRE_FALSE(result);
+    CHECK_FALSE(result.error().message.empty());
+  }
+  for (std::size_t i = 0; i < framing.size(); ++i) {
+    for (const unsigned bit : {1U, 2U, 4U, 16U, 128U}) {
+      document.framing = framing;
+      document.framing[i] = static_cast<std::uint8_t>(framing[i] ^ bit);
+      const auto result = formats::write_document(document, document.format);
+      if (result) CHECK(as_text(*result) == text);
+    }
+  }
+}
+
 }  // namespace watertight::test

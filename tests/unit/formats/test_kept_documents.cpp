@@ -198,20 +198,7 @@ TEST_CASE("kept documents: other solids, truncated and changed bytes are errors"
   const std::string text = tetrahedron("12.5");
   Document document = kept(text, Format::gml);
   const Bytes framing = document.framing;
-  for (std::size_t size = 1; size < framing.size(); ++size) {
-    document.framing.assign(framing.begin(), framing.begin() + static_cast<std::ptrdiff_t>(size));
-    const auto result = formats::write_document(document, Format::gml);
-    REQUIRE_FALSE(result);
-    CHECK_FALSE(result.error().message.empty());
-  }
-  for (std::size_t i = 0; i < framing.size(); ++i) {
-    for (const unsigned bit : {1U, 2U, 4U, 16U, 128U}) {
-      document.framing = framing;
-      document.framing[i] = static_cast<std::uint8_t>(framing[i] ^ bit);
-      const auto result = formats::write_document(document, Format::gml);
-      if (result) CHECK(as_text(*result) == text);
-    }
-  }
+  test::check_damaged_framing(document, text);
   document.framing = framing;
   document.features.clear();
   CHECK_FALSE(formats::write_document(document, Format::gml));

@@ -11,6 +11,7 @@
 #include "formats/document.h"
 #include "formats/text/kept_text.h"
 #include "tests/random.h"
+#include "tests/unit/formats/samples.h"
 
 namespace watertight::test_indexed_text {
 namespace {
@@ -196,18 +197,7 @@ TEST_CASE("indexed texts: truncated and changed forms are errors, never another 
   Document document = mesh_of(text, Format::obj);
   REQUIRE(kind_of(document) == kWithIndices);
   const Bytes framing = document.framing;
-  for (std::size_t size = 1; size < framing.size(); ++size) {
-    document.framing.assign(framing.begin(), framing.begin() + static_cast<std::ptrdiff_t>(size));
-    CHECK_FALSE(formats::write_document(document, Format::obj));
-  }
-  for (std::size_t i = 0; i < framing.size(); ++i) {
-    for (const unsigned bit : {1U, 2U, 4U, 16U, 128U}) {
-      document.framing = framing;
-      document.framing[i] = static_cast<std::uint8_t>(framing[i] ^ bit);
-      const auto result = formats::write_document(document, Format::obj);
-      if (result) CHECK(as_text(*result) == text);
-    }
-  }
+  test::check_damaged_framing(document, text);
   document.framing = framing;
   document.features.clear();
   CHECK_FALSE(formats::write_document(document, Format::obj));

@@ -179,7 +179,7 @@ class Search {
   /// True if a corner of the cavity lies in the tetrahedron without being its vertex.
   bool holds_corner(const geometry::Tetrahedron& tetrahedron) const {
     return std::any_of(corners_.begin(), corners_.end(), [&](Index vertex) {
-      if (std::find(tetrahedron.begin(), tetrahedron.end(), vertex) != tetrahedron.end()) {
+      if (has_vertex(tetrahedron, vertex)) {
         return false;
       }
       for (std::size_t corner = 0; corner < 4; ++corner) {

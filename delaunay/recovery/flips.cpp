@@ -11,13 +11,12 @@
 namespace watertight::delaunay {
 namespace {
 
-template <class Vertices>
-bool has(const Vertices& vertices, Index vertex) {
-  return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
-}
-
+/// The corner of a tetrahedron with a vertex, or 4.
 std::size_t corner_of(const geometry::Tetrahedron& t, Index vertex) {
-  return static_cast<std::size_t>(std::find(t.begin(), t.end(), vertex) - t.begin());
+  if (t[0] == vertex) return 0;
+  if (t[1] == vertex) return 1;
+  if (t[2] == vertex) return 2;
+  return t[3] == vertex ? 3 : 4;
 }
 
 /// Sorts parts of the mesh, and keeps the first of equal ones.
@@ -48,7 +47,7 @@ std::array<Index, 2> others(const geometry::Tetrahedron& t, Index p, Index q) {
 }
 
 Index other_apex(const geometry::Tetrahedron& t, const Triangle& face) {
-  return *std::find_if(t.begin(), t.end(), [&](Index vertex) { return !has(face, vertex); });
+  return *std::find_if(t.begin(), t.end(), [&](Index vertex) { return !has_vertex(face, vertex); });
 }
 
 }  // namespace
@@ -86,7 +85,7 @@ class Flips::Obstacles {
   int of_face(const Triangle& face) const {
     const bool is_crossed =
         !triangle_ && flips_.segment_crosses_face(segment_[0], segment_[1], face);
-    const bool is_in_ring = ring_ && has(face, (*ring_)[0]) && has(face, (*ring_)[1]);
+    const bool is_in_ring = ring_ && has_vertex(face, (*ring_)[0]) && has_vertex(face, (*ring_)[1]);
     return (is_crossed ? weight_ : 0) + (is_in_ring ? 1 : 0);
   }
   int of_edge(const VertexPair& edge) const {
@@ -138,13 +137,13 @@ std::span<const Index> Flips::star(Index vertex) {
 }
 
 Index Flips::tetrahedron_at(Index a, Index b) {
-  return find_in_star(a, [b](const geometry::Tetrahedron& t) { return has(t, b); });
+  return find_in_star(a, [b](const geometry::Tetrahedron& t) { return has_vertex(t, b); });
 }
 
 bool Flips::is_face(const Triangle& triangle) {
   const auto [a, b, c] = triangle;
   const auto belongs = [b = b, c = c](const geometry::Tetrahedron& t) {
-    return has(t, b) && has(t, c);
+    return has_vertex(t, b) && has_vertex(t, c);
   };
   return find_in_star(a, belongs) != kNone;
 }
@@ -188,7 +187,7 @@ std::optional<Flips::Ring> Flips::ring_of(const MeshEdge& edge) const {
 }
 
 bool Flips::crosses_face(Index a, Index b, const Triangle& face) const {
-  if (has(face, a) || has(face, b)) return false;
+  if (has_vertex(face, a) || has_vertex(face, b)) return false;
   const auto [p, q, r] = face;
   const int first = side(a, b, p, q);
   if (first == 0 || side(a, b, q, r) != first || side(a, b, r, p) != first) return false;
@@ -196,7 +195,7 @@ bool Flips::crosses_face(Index a, Index b, const Triangle& face) const {
 }
 
 bool Flips::segment_crosses_face(Index a, Index b, const Triangle& face) {
-  if (has(face, a) || has(face, b)) return false;
+  if (has_vertex(face, a) || has_vertex(face, b)) return false;
   const auto [p, q, r] = face;
   const int first = turns_.turn(p, q);
   if (first == 0 || turns_.turn(q, r) != first || turns_.turn(r, p) != first) return false;
@@ -307,22 +306,23 @@ class Flips::RingTriangulation {
   bool exists() const { return whole().exists; }
   int obstacles() const { return whole().obstacles; }
 
-  std::vector<geometry::Tetrahedron> tetrahedra() const {
+  /// Calls `add` with each tetrahedron.
+  template <class Add>
+  void for_each_tetrahedron(const Add& add) const {
     const auto [p, q] = ring_.edge;
     const RingList& v = ring_.vertices;
-    std::vector<geometry::Tetrahedron> result;
-    std::vector<std::array<std::size_t, 2>> pending{{0, v.size() - 1}};
-    while (!pending.empty()) {
-      const auto [i, j] = pending.back();
-      pending.pop_back();
+    std::array<std::array<std::size_t, 2>, kLargestRing> pending;
+    std::size_t count = 0;
+    pending[count++] = {0, v.size() - 1};
+    while (count > 0) {
+      const auto [i, j] = pending[--count];
       if (j == i + 1) continue;
       const std::size_t k = best_[i][j].middle;
-      result.push_back({v[i], v[k], v[j], q});
-      result.push_back({v[i], v[j], v[k], p});
-      pending.push_back({i, k});
-      pending.push_back({k, j});
+      add({v[i], v[k], v[j], q});
+      add({v[i], v[j], v[k], p});
+      pending[count++] = {i, k};
+      pending[count++] = {k, j};
     }
-    return result;
   }
 
  private:
@@ -456,8 +456,12 @@ bool Flips::remove_edge(const MeshEdge& edge, const Obstacles& obstacles) {
   if (!is_flat_outside) return false;
   const RingTriangulation triangulation(*this, *ring, obstacles, before);
   if (!triangulation.exists() || triangulation.obstacles() >= before) return false;
+  std::array<geometry::Tetrahedron, 2 * kLargestRing> new_ones;
+  std::size_t count = 0;
+  triangulation.for_each_tetrahedron(
+      [&](const geometry::Tetrahedron& t) { new_ones[count++] = t; });
   mesh_.replace(std::span(ring->tetrahedra.begin(), ring->tetrahedra.size()),
-                triangulation.tetrahedra());
+                std::span(new_ones).first(count));
   return true;
 }
 
@@ -477,13 +481,13 @@ bool Flips::shrink_ring(const MeshEdge& edge, const Obstacles& obstacles) {
 
 bool Flips::is_there(const MeshEdge& edge) const {
   const geometry::Tetrahedron& t = mesh_.tetrahedron(edge.tetrahedron);
-  return has(t, edge.vertices[0]) && has(t, edge.vertices[1]);
+  return has_vertex(t, edge.vertices[0]) && has_vertex(t, edge.vertices[1]);
 }
 
 bool Flips::is_there(const MeshFace& face) const {
   const geometry::Tetrahedron& t = mesh_.tetrahedron(face.tetrahedron);
-  return !has(face.vertices, t[face.corner]) &&
-         std::ranges::all_of(face.vertices, [&](Index vertex) { return has(t, vertex); });
+  return !has_vertex(face.vertices, t[face.corner]) &&
+         std::ranges::all_of(face.vertices, [&](Index vertex) { return has_vertex(t, vertex); });
 }
 
 bool Flips::recover_edge(Index a, Index b, std::size_t shrinks) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <unordered_set>
@@ -23,6 +24,11 @@ namespace watertight::delaunay {
 /// The triangles of a boundary and their edges, which flips and fillings leave as they are.
 class KeptParts {
  public:
+  /// For so many triangles, or some more.
+  explicit KeptParts(std::size_t triangles) {
+    faces_.reserve(triangles);
+    edges_.reserve(2 * triangles);
+  }
   /// Adds a triangle and its edges.
   void add(const Triangle& sorted);
   void add(const VertexPair& edge) { edges_.insert(key_of(edge)); }
@@ -41,8 +47,9 @@ class KeptParts {
     return std::uint64_t{edge[0]} << 32U | edge[1];
   }
 
-  std::unordered_set<Triangle, Hash> faces_;
-  std::unordered_set<std::uint64_t, Hash> edges_;
+  std::pmr::monotonic_buffer_resource memory_;
+  std::pmr::unordered_set<Triangle, Hash> faces_{&memory_};
+  std::pmr::unordered_set<std::uint64_t, Hash> edges_{&memory_};
 };
 
 /// The most times that a ring is shortened for one edge or triangle.

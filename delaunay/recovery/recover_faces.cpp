@@ -64,11 +64,11 @@ class Recovery {
         apex_(static_cast<Index>(points.size())),
         mesh_(std::move(tetrahedra), points.size()),
         missing_(std::move(missing)),
+        wanted_(triangles.size()),
         visits_left_(kFewVisits + kVisitsPerTriangle * triangles.size()),
         steps_left_(16384 + kFillStepsPerTriangle * triangles.size()),
         cancellation_(is_cancelled),
-        flips_(points_, mesh_, wanted_, kFewVisits + kVisitsPerTriangle * triangles.size(),
-               is_cancelled) {
+        flips_(points_, mesh_, wanted_, visits_left_, is_cancelled) {
     points_.emplace_back();  // the apex
     for (Index i = 0; i < triangles.size(); ++i) {
       triangles_.push_back({sorted(triangles[i]), i});

@@ -15,10 +15,13 @@
 
 namespace watertight::delaunay {
 
-/// True if a triangle or a tetrahedron has a vertex.
-template <class Vertices>
-bool has_vertex(const Vertices& vertices, Index vertex) {
-  return std::find(vertices.begin(), vertices.end(), vertex) != vertices.end();
+/// True if a triangle or a tetrahedron has a vertex. Compares all of its vertices, without a
+/// branch.
+template <std::size_t N>
+bool has_vertex(const std::array<Index, N>& vertices, Index vertex) {
+  bool is_found = false;
+  for (const Index other : vertices) is_found |= other == vertex;
+  return is_found;
 }
 /// The face of a positive tetrahedron opposite to a corner, turned so that orient3d(face, corner)
 /// is positive.

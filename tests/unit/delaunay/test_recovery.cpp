@@ -320,7 +320,7 @@ struct FlipMesh {
 
   std::vector<Point> points;
   delaunay::TetrahedronMesh mesh;
-  delaunay::KeptParts kept;
+  delaunay::KeptParts kept{0};
   CancelPoll never;
   delaunay::Flips flips{points, mesh, kept, 100'000, never};
 };

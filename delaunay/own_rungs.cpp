@@ -9,6 +9,7 @@
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/constrained/constrained_delaunay.h"
 #include "delaunay/recovery/recover_faces.h"
+#include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/intersection/box_partition.h"
 #include "tessellate/flatness.h"
 
@@ -43,27 +44,63 @@ void keep_bent_facets(const Solid& solid, std::vector<bool>& is_kept) {
   }
 }
 
+/// True for each facet that is not flat and whose triangles are not its canonical ones.
+std::vector<bool> bent_otherwise(const Solid& solid, const tessellate::FacetTriangles& canonical,
+                                 const FollowingTriangles& following) {
+  std::vector<bool> is_bent(solid.facet_count(), false);
+  std::vector<Triangle> known;
+  for (Index facet = 0; facet < solid.facet_count(); ++facet) {
+    known.clear();
+    for (Index t = canonical.first[facet]; t < canonical.first[facet + 1]; ++t) {
+      known.push_back(rotated(canonical.triangles[t]));
+    }
+    std::sort(known.begin(), known.end());
+    const auto own =
+        std::span(following.triangles)
+            .subspan(following.first[facet], following.first[facet + 1] - following.first[facet]);
+    is_bent[facet] = !std::ranges::equal(known, own) && !tessellate::is_flat(solid, facet);
+  }
+  return is_bent;
+}
+
 /// Adds each facet of which a triangle crosses another one to `is_kept`. The canonical triangles of
 /// a valid solid do not cross, nor do those of facets in a plane; those that follow the Delaunay
 /// tetrahedralization may. False if there is none to add. Errors: cancelled.
-Result<bool> part_crossing_triangles(const Solid& solid, const FollowingTriangles& following,
+Result<bool> part_crossing_triangles(const Solid& solid,
+                                     const tessellate::FacetTriangles& canonical,
+                                     const FollowingTriangles& following,
                                      std::vector<bool>& is_kept, const CancelPoll& is_cancelled) {
-  std::vector<Index> group_of(following.triangles.size(), 0);  // faces do not cross each other
-  for (Index i = 0; i < group_of.size(); ++i) {
-    if (following.delaunay_face[i] == kNone) group_of[i] = i + 1;
+  const std::vector<bool> is_bent = bent_otherwise(solid, canonical, following);
+  if (std::ranges::find(is_bent, true) == is_bent.end()) return false;
+  Box bent;
+  for (Index i = 0; i < following.triangles.size(); ++i) {
+    if (!is_bent[following.facet_of[i]]) continue;
+    for (const Index vertex : following.triangles[i]) bent.include(solid.vertices()[vertex]);
+  }
+  std::vector<Triangle> triangles;
+  std::vector<Index> facet_of;
+  // Triangles of one group do not cross: those of the other facets, and faces.
+  std::vector<Index> group_of;
+  for (Index i = 0; i < following.triangles.size(); ++i) {
+    const Index facet = following.facet_of[i];
+    Box box;
+    for (const Index vertex : following.triangles[i]) box.include(solid.vertices()[vertex]);
+    if (!box.overlaps(bent)) continue;
+    triangles.push_back(following.triangles[i]);
+    facet_of.push_back(facet);
+    const bool is_face = following.delaunay_face[i] != kNone;
+    group_of.push_back(!is_bent[facet] ? 0 : is_face ? 1 : i + 2);
   }
   geometry::IntersectionOptions options;
   options.cancel = is_cancelled;
   options.group_of = group_of;
-  const auto crossing =
-      geometry::intersecting_pairs(solid.vertices(), following.triangles, options);
+  const auto crossing = geometry::intersecting_pairs(solid.vertices(), triangles, options);
   if (!crossing) return crossing.error();
   bool has_changed = false;
   for (const geometry::IntersectingPair& pair : *crossing) {
     for (const Index triangle : {pair.first, pair.second}) {
-      const Index facet = following.facet_of[triangle];
-      if (is_kept[facet] || tessellate::is_flat(solid, facet)) continue;
-      is_kept[facet] = has_changed = true;
+      const Index facet = facet_of[triangle];
+      if (is_bent[facet] && !is_kept[facet]) is_kept[facet] = has_changed = true;
     }
   }
   return has_changed;
@@ -85,28 +122,32 @@ OwnRungs::OwnRungs(const Solid& solid, const tessellate::FacetTriangles& triangl
   points_ = scaled_;
 }
 
-/// Makes the canonical Delaunay tetrahedralization and the facets' triangles that follow it, but
-/// for facets that keep their canonical ones.
-std::optional<Error> OwnRungs::make_delaunay(const std::vector<bool>& is_kept) {
-  Result<CanonicalDelaunay> delaunay =
-      canonical_delaunay(points_, 4096 + kTetrahedraPerVertex * points_.size(), is_cancelled_);
-  if (!delaunay) return delaunay.error();
+/// Makes the facets' triangles that follow the canonical Delaunay tetrahedralization, which is made
+/// first if it is not there, but for facets that keep their canonical ones.
+std::optional<Error> OwnRungs::follow(const std::vector<bool>& is_kept) {
+  following_.reset();
+  if (!delaunay_) {
+    Result<CanonicalDelaunay> made =
+        canonical_delaunay(points_, 4096 + kTetrahedraPerVertex * points_.size(), is_cancelled_);
+    if (!made) return made.error();
+    delaunay_ = *std::move(made);
+  }
   Result<FollowingTriangles> followed =
-      follow_delaunay(solid_, triangles_, *delaunay, is_kept, is_cancelled_);
+      follow_delaunay(solid_, triangles_, *delaunay_, is_kept, is_cancelled_);
   if (!followed) return followed.error();
   following_ = *std::move(followed);
-  tetrahedra_ = std::move(delaunay->tetrahedra);
   return std::nullopt;
 }
 
 RungResult OwnRungs::delaunay(const std::vector<bool>& is_kept) {
-  if (const auto error = make_delaunay(is_kept)) return failed_rung(*error);
+  if (const auto error = follow(is_kept)) return failed_rung(*error);
   if (following_->missing_total > 0) {
     return missing_faces(following_->missing_total, following_->triangles.size(), "Delaunay faces");
   }
   const FollowingTriangles following = *std::exchange(following_, std::nullopt);
   const auto points = solid_.vertices();
-  return {with_faces({points.begin(), points.end()}, std::exchange(tetrahedra_, {}),
+  CanonicalDelaunay delaunay = *std::exchange(delaunay_, std::nullopt);
+  return {with_faces({points.begin(), points.end()}, std::move(delaunay.tetrahedra),
                      following.triangles, following.facet_of),
           {},
           {}};
@@ -119,12 +160,12 @@ RungResult OwnRungs::recovered(const std::vector<bool>& is_taken_apart) {
   bool is_due = !following_ || is_divided_;
   for (int round = 0; round <= kMostPartings; ++round) {
     if (is_due) {
-      if (const auto error = make_delaunay(is_kept)) return failed_rung(*error);
+      if (const auto error = follow(is_kept)) return failed_rung(*error);
     }
     is_due = part_equal_triangles(following_->triangles, following_->facet_of, is_kept);
     if (!is_due) {
       const Result<bool> has_parted =
-          part_crossing_triangles(solid_, *following_, is_kept, is_cancelled_);
+          part_crossing_triangles(solid_, triangles_, *following_, is_kept, is_cancelled_);
       if (!has_parted) return failed_rung(has_parted.error());
       is_due = *has_parted;
     }
@@ -136,8 +177,10 @@ RungResult OwnRungs::recovered(const std::vector<bool>& is_taken_apart) {
   for (Index i = 0; i < following.triangles.size(); ++i) {
     if (following.delaunay_face[i] == kNone) missing.push_back(i);
   }
-  Result<RecoveredFaces> recovered = recover_faces(points_, std::exchange(tetrahedra_, {}),
-                                                   following.triangles, missing, is_cancelled_);
+  std::vector<geometry::Tetrahedron> tetrahedra = std::move(delaunay_->tetrahedra);
+  delaunay_.reset();
+  Result<RecoveredFaces> recovered =
+      recover_faces(points_, std::move(tetrahedra), following.triangles, missing, is_cancelled_);
   if (!recovered) return failed_rung(recovered.error());
   if (recovered->missing > 0) return constrained(is_taken_apart);
   unscale(recovered->points, scale_);

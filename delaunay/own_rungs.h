@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "delaunay/axis_scale.h"
 #include "delaunay/canonical/follow_delaunay.h"
+#include "delaunay/canonical_delaunay.h"
 #include "delaunay/rung.h"
 #include "delaunay/tetrahedralization.h"
 #include "geometry/solid.h"
@@ -47,7 +48,7 @@ class OwnRungs {
   RungResult recovered(const std::vector<bool>& is_taken_apart);
 
  private:
-  std::optional<Error> make_delaunay(const std::vector<bool>& is_kept);
+  std::optional<Error> follow(const std::vector<bool>& is_kept);
   RungResult constrained(const std::vector<bool>& is_taken_apart);
   Tetrahedralization with_faces(std::vector<Point> points,
                                 std::vector<geometry::Tetrahedron> tetrahedra,
@@ -62,7 +63,7 @@ class OwnRungs {
   bool is_divided_;
   const CancelPoll& is_cancelled_;
   // From rung 0 to rung 1.
-  std::vector<geometry::Tetrahedron> tetrahedra_;
+  std::optional<CanonicalDelaunay> delaunay_;
   std::optional<FollowingTriangles> following_;
 };
 

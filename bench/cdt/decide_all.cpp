@@ -41,6 +41,7 @@ struct Totals {
   delaunay::CdtStatistics cdt;
   std::vector<double> bytes_a_vertex;  // the most that certify() held, for each solid
   std::vector<double> recovered_ms;  // CPU time of rung 1, with its certificate, where it was tried
+  std::size_t steiner_points = 0;    // of the accepted tetrahedralizations
   std::vector<std::string> undecided;
 };
 
@@ -88,6 +89,10 @@ void decide(const std::string& name, const SubmittedSolid& submitted,
     if (attempt.rung == delaunay::Rung::recovered) {
       totals.recovered_ms.push_back(1e3 * attempt.cpu_seconds);
     }
+  }
+  if (inspection.certified && inspection.certified->certificate) {
+    const auto& made = inspection.certified->certificate->tetrahedralization;
+    totals.steiner_points += made.points.size() - made.input_count;
   }
   if (settings.prints_attempts) print_attempts(name, report);
   if (report.verdict == Verdict::valid) ++totals.valid;
@@ -153,6 +158,7 @@ void print_totals(const Totals& totals) {
           static_cast<unsigned long long>(cdt.attempts[rung][outcome]));
     }
   }
+  std::printf("Steiner points: %zu\n", totals.steiner_points);
   std::printf("certify: %.2f s wall; CDT step: %.2f s wall\n", totals.seconds, cdt.seconds);
   print_cost("all solids", cdt);
   print_distribution("ms of CPU of rung recovered, with its certificate", totals.recovered_ms);

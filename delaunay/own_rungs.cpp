@@ -2,6 +2,7 @@
 #include "delaunay/own_rungs.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "delaunay/canonical/small_delaunay.h"
@@ -72,10 +73,10 @@ Result<bool> part_crossing_triangles(const Solid& solid,
                                      std::vector<bool>& is_kept, const CancelPoll& is_cancelled) {
   const std::vector<bool> is_bent = bent_otherwise(solid, canonical, following);
   if (std::ranges::find(is_bent, true) == is_bent.end()) return false;
-  Box bent;
+  Box near_bent;
   for (Index i = 0; i < following.triangles.size(); ++i) {
     if (!is_bent[following.facet_of[i]]) continue;
-    for (const Index vertex : following.triangles[i]) bent.include(solid.vertices()[vertex]);
+    for (const Index vertex : following.triangles[i]) near_bent.include(solid.vertices()[vertex]);
   }
   std::vector<Triangle> triangles;
   std::vector<Index> facet_of;
@@ -83,9 +84,9 @@ Result<bool> part_crossing_triangles(const Solid& solid,
   std::vector<Index> group_of;
   for (Index i = 0; i < following.triangles.size(); ++i) {
     const Index facet = following.facet_of[i];
-    Box box;
-    for (const Index vertex : following.triangles[i]) box.include(solid.vertices()[vertex]);
-    if (!box.overlaps(bent)) continue;
+    const auto& [a, b, c] = following.triangles[i];
+    const std::array corners{solid.vertices()[a], solid.vertices()[b], solid.vertices()[c]};
+    if (!geometry::box_of(corners).overlaps(near_bent)) continue;
     triangles.push_back(following.triangles[i]);
     facet_of.push_back(facet);
     const bool is_face = following.delaunay_face[i] != kNone;

@@ -451,6 +451,7 @@ EncodedInput encode_one(const EncodeCommand& command, const files::InputFile& so
   options.encode.mode = command.keeps_steiner ? Mode::bitmap : mode_named(command.mode);
   options.steiner = command.keeps_steiner ? pipeline::SteinerVertices::keep
                                           : pipeline::SteinerVertices::leave_out;
+  options.certify.ladder.keeps_facets = command.keeps_steiner;
   auto encoded = [&] {
     ProgressBar bar(command.input, position);
     options.progress = [&bar](std::size_t done, std::size_t total) {

@@ -26,6 +26,9 @@ struct Certificate {
   /// Facets that are not exactly planar and that the faces fill with other triangles than the
   /// canonical ones: "valid within tolerance".
   std::vector<Index> refilled_facets;
+  /// True if the tetrahedralization is that of a solid with the same surface, in which neighbouring
+  /// facets in one plane are one facet, and vertices inside such a facet are left out.
+  bool has_merged_facets = false;
 };
 
 /// Outcome of the check. Unless accepted, `refusal` names the first item that fails, and `detail`

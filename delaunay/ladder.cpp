@@ -19,6 +19,7 @@
 
 #include "delaunay/cdt_frames.h"
 #include "delaunay/cdt_statistics.h"
+#include "delaunay/constrained/merge_facets.h"
 #include "delaunay/own_rungs.h"
 #include "tessellate/flatness.h"
 #include "workers/worker_pool.h"
@@ -312,7 +313,31 @@ class Climb {
     attempt_.outcome = std::move(text);
   }
 
+  /// Proves the solid by one of the same surface that has fewer facets, and so fewer edges that a
+  /// tetrahedralization must have. False if that proves nothing.
+  bool try_merged() {
+    std::optional<MergedFacets> merged = merge_flat_facets(solid_, canonical_);
+    if (!merged) return false;
+    const tessellate::FacetTriangles facets = tessellate::triangulate_facets(merged->solid);
+    LadderOptions options;
+    options.last_rung = Rung::recovered;
+    options.cancel = options_.cancel;
+    options.keeps_facets = true;
+    LadderResult proven =
+        Climb(facets.divided_solid(merged->solid), facets, nullptr, options).run();
+    if (!proven.certificate) return false;
+    Certificate certificate = *std::move(proven.certificate);
+    certificate.rung = Rung::recovered;
+    certificate.has_merged_facets = true;
+    for (Index& facet : certificate.refilled_facets) facet = merged->source[facet];
+    result_.certificate = std::move(certificate);
+    conclude(RungOutcome::accepted, "accepted");
+    return true;
+  }
+
   void try_own(Rung rung) {
+    const bool may_merge = rung == Rung::recovered && !options_.keeps_facets && !options_.strict;
+    if (may_merge && try_merged()) return;
     if (!own_) own_.emplace(solid_, triangles(), contacts_.has_contacts(), options_.cancel);
     RungResult result =
         rung == Rung::delaunay ? own_->delaunay(is_kept_) : own_->recovered(taken_apart());

@@ -59,6 +59,9 @@ struct LadderOptions {
   /// The most bytes of address space of an engine; 0: by size only (0.5 GiB and 16 KiB a triangle).
   std::uint64_t memory_in_engine = 0;
   CancelPoll cancel = {};
+  /// True: each facet is a union of faces. False: neighbouring facets in one plane need only be so
+  /// together, which is the same surface (Certificate::has_merged_facets).
+  bool keeps_facets = false;
   /// The result of divide_at_contacts() for the solid, or null: the ladder calls it.
   const ContactTriangles* contacts = nullptr;
   /// True if the exact tests have shown one interior: a refusal that calls the solid wrong does not

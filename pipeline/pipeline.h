@@ -155,7 +155,8 @@ std::string_view to_string(Policy policy);
 /// Called with the number of features that are done and of all, from one thread at a time.
 using Progress = std::function<void(std::size_t, std::size_t)>;
 
-/// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only).
+/// Whether the certificates' Steiner vertices go into the blobs (mode `bitmap` only, and with
+/// delaunay::LadderOptions::keeps_facets).
 enum class SteinerVertices : std::uint8_t { leave_out, keep };
 
 /// How a feature is encoded, and for which collection.

@@ -49,6 +49,7 @@ std::optional<delaunay::Certificate> certificate_of(const Solid& solid,
   delaunay::LadderOptions options;
   options.first_rung = first;
   options.last_rung = last;
+  options.keeps_facets = true;
   return delaunay::climb_ladder(solid, facets, &workers, options).certificate;
 }
 

@@ -93,6 +93,9 @@ Result<BoundaryComplex> conform(const geometry::CanonicalSolid& canonical,
   const Solid& solid = canonical.boundary.solid();
   const delaunay::Tetrahedralization& mesh = certificate.tetrahedralization;
   const Error foreign = not_encodable("the certificate belongs to another solid");
+  if (certificate.has_merged_facets) {
+    return not_encodable("the certificate is about merged facets (LadderOptions::keeps_facets)");
+  }
   if (mesh.input_count != solid.vertex_count() || mesh.points.size() < mesh.input_count) {
     return foreign;
   }

@@ -331,13 +331,21 @@ class Climb {
     certificate.has_merged_facets = true;
     for (Index& facet : certificate.refilled_facets) facet = merged->source[facet];
     result_.certificate = std::move(certificate);
+    attempt_.refusal = CertificateRefusal::none;
     conclude(RungOutcome::accepted, "accepted");
     return true;
   }
 
   void try_own(Rung rung) {
     const bool may_merge = rung == Rung::recovered && !options_.keeps_facets && !options_.strict;
-    if (may_merge && try_merged()) return;
+    // With more facets than vertices most facets are triangles, and many of these in one plane.
+    const bool is_merged_first = may_merge && solid_.facet_count() > solid_.vertex_count();
+    if (is_merged_first && try_merged()) return;
+    try_facets(rung);
+    if (may_merge && !is_merged_first && !result_.certificate) try_merged();
+  }
+
+  void try_facets(Rung rung) {
     if (!own_) own_.emplace(solid_, triangles(), contacts_.has_contacts(), options_.cancel);
     RungResult result =
         rung == Rung::delaunay ? own_->delaunay(is_kept_) : own_->recovered(taken_apart());

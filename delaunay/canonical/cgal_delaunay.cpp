@@ -45,67 +45,16 @@ std::vector<std::size_t> insertion_order(const std::vector<Kernel::Point_3>& poi
   return order;
 }
 
-Status insert_all(std::span<const Point> points, std::uint64_t max_tetrahedra,
-                  const CancelPoll& is_cancelled, Delaunay& delaunay) {
-  std::vector<Kernel::Point_3> converted;
-  converted.reserve(points.size());
-  for (const Point& p : points) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      return Error{ErrorCode::invalid_argument,
-                   "a point of a Delaunay tetrahedralization is not finite"};
-    }
-    converted.emplace_back(p.x, p.y, p.z);
-  }
-  Cancellation cancellation(is_cancelled);
-  Delaunay::Vertex_handle hint;
-  for (const std::size_t i : insertion_order(converted)) {
-    // The number of new cells decides when to ask: in degenerate sets each point makes many.
-    const std::size_t cells = delaunay.tds().number_of_cells();
-    const std::size_t before = delaunay.number_of_vertices();
-    hint = delaunay.insert(converted[i], hint);
-    if (delaunay.number_of_vertices() == before) {
-      return Error{ErrorCode::invalid_argument,
-                   "two points of a Delaunay tetrahedralization are equal"};
-    }
-    hint->info() = static_cast<Index>(i);
-    // The count includes infinite cells: at most about as many as finite cells and 2 n.
-    if (delaunay.tds().number_of_cells() / 2 > max_tetrahedra) {
-      return Error{ErrorCode::limit_exceeded, "the Delaunay tetrahedralization has more than " +
-                                                  std::to_string(max_tetrahedra) + " tetrahedra"};
-    }
-    const std::size_t cells_now = delaunay.tds().number_of_cells();
-    if (cancellation.is_due_and_wanted(cells_now > cells ? 1 + cells_now - cells : 1)) {
-      return Error{ErrorCode::cancelled, "cancelled by the caller"};
-    }
-  }
-  return Done{};
-}
-
 geometry::Tetrahedron vertices_of(Delaunay::Cell_handle cell) {
   return {cell->vertex(0)->info(), cell->vertex(1)->info(), cell->vertex(2)->info(),
           cell->vertex(3)->info()};
 }
 
-}  // namespace
-
-Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points, std::uint64_t max_tetrahedra,
-                                        const CancelPoll& is_cancelled) {
-  if (points.size() >= kNone) {
-    return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
-  }
-  Delaunay delaunay;
-  delaunay.infinite_vertex()->info() = kNone;
-  if (Status inserted = insert_all(points, max_tetrahedra, is_cancelled, delaunay); !inserted) {
-    return std::move(inserted).error();
-  }
+CanonicalDelaunay list(const Delaunay& delaunay) {
   if (delaunay.dimension() < 3) return CanonicalDelaunay{};
   std::vector<geometry::Tetrahedron> tetrahedra;
   for (auto cell = delaunay.finite_cells_begin(); cell != delaunay.finite_cells_end(); ++cell) {
     tetrahedra.push_back(vertices_of(cell));
-  }
-  if (tetrahedra.size() > max_tetrahedra) {
-    return Error{ErrorCode::limit_exceeded, "the Delaunay tetrahedralization has more than " +
-                                                std::to_string(max_tetrahedra) + " tetrahedra"};
   }
   std::vector<ListedFace> faces;
   for (auto facet = delaunay.finite_facets_begin(); facet != delaunay.finite_facets_end();
@@ -116,7 +65,100 @@ Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points, std::uint
     faces.push_back(face_opposite(vertices_of(cell), static_cast<std::size_t>(corner), beyond));
   }
   return list_canonically(std::move(tetrahedra), std::move(faces),
-                          static_cast<Index>(points.size()));
+                          static_cast<Index>(delaunay.number_of_vertices()));
+}
+
+Error too_many_tetrahedra(std::uint64_t max_tetrahedra) {
+  return {ErrorCode::limit_exceeded, "the Delaunay tetrahedralization has more than " +
+                                         std::to_string(max_tetrahedra) + " tetrahedra"};
+}
+
+}  // namespace
+
+struct GrowingDelaunay::State {
+  Delaunay delaunay;
+  std::vector<Delaunay::Vertex_handle> vertices;
+  std::vector<bool> is_changed;  // vertex -> it has new neighbours
+};
+
+GrowingDelaunay::GrowingDelaunay() : state_(std::make_unique<State>()) {
+  state_->delaunay.infinite_vertex()->info() = kNone;
+}
+
+GrowingDelaunay::~GrowingDelaunay() = default;
+
+Status GrowingDelaunay::insert(std::span<const Point> points, std::uint64_t max_tetrahedra,
+                               const CancelPoll& is_cancelled) {
+  Delaunay& delaunay = state_->delaunay;
+  const std::size_t first = state_->vertices.size();
+  if (points.size() >= kNone - first) {
+    return Error{ErrorCode::limit_exceeded, "too many points for a Delaunay tetrahedralization"};
+  }
+  std::vector<Kernel::Point_3> converted;
+  converted.reserve(points.size());
+  for (const Point& p : points) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      return Error{ErrorCode::invalid_argument,
+                   "a point of a Delaunay tetrahedralization is not finite"};
+    }
+    converted.emplace_back(p.x, p.y, p.z);
+  }
+  state_->vertices.resize(first + points.size());
+  state_->is_changed.resize(first + points.size(), true);
+  Cancellation cancellation(is_cancelled);
+  Delaunay::Vertex_handle hint;
+  std::vector<Delaunay::Vertex_handle> neighbours;
+  for (const std::size_t i : insertion_order(converted)) {
+    // The number of new cells decides when to ask: in degenerate sets each point makes many.
+    const std::size_t cells = delaunay.tds().number_of_cells();
+    const std::size_t before = delaunay.number_of_vertices();
+    hint = delaunay.insert(converted[i], hint);
+    if (delaunay.number_of_vertices() == before) {
+      return Error{ErrorCode::invalid_argument,
+                   "two points of a Delaunay tetrahedralization are equal"};
+    }
+    hint->info() = static_cast<Index>(first + i);
+    state_->vertices[first + i] = hint;
+    // The count includes infinite cells: at most about as many as finite cells and 2 n.
+    if (delaunay.tds().number_of_cells() / 2 > max_tetrahedra) {
+      return too_many_tetrahedra(max_tetrahedra);
+    }
+    if (first > 0 && delaunay.dimension() == 3) {
+      neighbours.clear();
+      delaunay.finite_adjacent_vertices(hint, std::back_inserter(neighbours));
+      for (const auto& vertex : neighbours) state_->is_changed[vertex->info()] = true;
+    }
+    const std::size_t cells_now = delaunay.tds().number_of_cells();
+    if (cancellation.is_due_and_wanted(cells_now > cells ? 1 + cells_now - cells : 1)) {
+      return Error{ErrorCode::cancelled, "cancelled by the caller"};
+    }
+  }
+  if (delaunay.dimension() == 3 && delaunay.number_of_finite_cells() > max_tetrahedra) {
+    return too_many_tetrahedra(max_tetrahedra);
+  }
+  return Done{};
+}
+
+bool GrowingDelaunay::has_edge(Index a, Index b) const {
+  Delaunay::Cell_handle cell;
+  int i = 0;
+  int j = 0;
+  return state_->delaunay.is_edge(state_->vertices[a], state_->vertices[b], cell, i, j);
+}
+
+std::vector<bool> GrowingDelaunay::changed() {
+  return std::exchange(state_->is_changed, std::vector<bool>(state_->vertices.size(), false));
+}
+
+CanonicalDelaunay GrowingDelaunay::listed() const { return list(state_->delaunay); }
+
+Result<CanonicalDelaunay> cgal_delaunay(std::span<const Point> points, std::uint64_t max_tetrahedra,
+                                        const CancelPoll& is_cancelled) {
+  GrowingDelaunay delaunay;
+  if (Status inserted = delaunay.insert(points, max_tetrahedra, is_cancelled); !inserted) {
+    return std::move(inserted).error();
+  }
+  return delaunay.listed();
 }
 
 }  // namespace watertight::delaunay

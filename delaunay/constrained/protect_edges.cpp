@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "delaunay/cancellation.h"
+#include "delaunay/canonical/cgal_delaunay.h"
 #include "delaunay/recovery/point_between.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/predicates/predicates.h"
@@ -38,24 +39,6 @@ constexpr double kMostPlace = 0.8;
 constexpr double kLeastPlaceOfEqualEnds = 1.0 / 8;
 /// A Delaunay tetrahedralization of a boundary has about 7 tetrahedra for each vertex.
 constexpr std::uint64_t kTetrahedraPerVertex = 256;
-/// Coordinates are multiplied by 2^30 at most to become whole numbers.
-constexpr double kMostScale = 0x1p30;
-
-/// The canonical Delaunay tetrahedralization does not change with a power of two; whole numbers
-/// take less time.
-std::vector<Point> scaled_to_integers(const std::vector<Point>& points) {
-  const auto is_whole = [](double x) { return std::floor(x) == x; };
-  double scale = 1;
-  for (const Point& p : points) {
-    for (int axis = 0; axis < 3; ++axis) {
-      while (scale < kMostScale && !is_whole(p[axis] * scale)) scale *= 2;
-    }
-  }
-  std::vector<Point> scaled = points;
-  for (Point& p : scaled) p = {p.x * scale, p.y * scale, p.z * scale};
-  return scaled;
-}
-
 class Protection {
  public:
   Protection(const Solid& solid, const tessellate::FacetTriangles& triangles,
@@ -85,13 +68,15 @@ class Protection {
     }
     const std::size_t most_points =
         given + std::min(kFewSteiner + kSteinerPerVertex * given, kMostSteiner);
+    std::size_t inserted = 0;
     for (std::size_t round = 0; round < kMostRounds && points_.size() <= most_points; ++round) {
-      Result<CanonicalDelaunay> delaunay = canonical_delaunay(
-          scaled_to_integers(points_), 4096 + kTetrahedraPerVertex * points_.size(), is_cancelled_);
-      if (!delaunay) return delaunay.error();
-      const std::vector<VertexPair> missing = missing_parts(*delaunay);
-      if (missing.empty()) return result(*std::move(delaunay));
-      if (Status divided = divide(missing); !divided) return divided.error();
+      const auto added = std::span(points_).subspan(inserted);
+      const Status grown =
+          delaunay_.insert(added, 4096 + kTetrahedraPerVertex * points_.size(), is_cancelled_);
+      if (!grown) return grown.error();
+      find_missing_parts(static_cast<Index>(std::exchange(inserted, points_.size())));
+      if (missing_.empty()) return result(delaunay_.listed());
+      if (Status divided = divide(); !divided) return divided.error();
     }
     return Error{ErrorCode::limit_exceeded, "the edges need more than " +
                                                 std::to_string(most_points) + " vertices, or " +
@@ -132,24 +117,23 @@ class Protection {
     edges_.push_back({a, b, {}});
   }
 
-  std::vector<VertexPair> missing_parts(const CanonicalDelaunay& delaunay) const {
-    std::vector<VertexPair> present;
-    present.reserve(3 * delaunay.faces.size());
-    for (const Triangle& face : delaunay.faces) {
-      for (const VertexPair& edge : edges_of(face)) present.push_back(edge);
-    }
-    std::sort(present.begin(), present.end());
-    std::vector<VertexPair> missing;
+  /// Parts of the vertices from `first_new` on are looked for. Another part was an edge, and can be
+  /// missing only between two vertices with new neighbours.
+  void find_missing_parts(Index first_new) {
+    const std::vector<bool> is_changed = delaunay_.changed();
+    missing_.clear();
     for (const auto& [part, edge] : parts_) {
-      if (!std::binary_search(present.begin(), present.end(), part)) missing.push_back(part);
+      const auto [a, b] = part;
+      const bool is_due = std::max(a, b) >= first_new || (is_changed[a] && is_changed[b]);
+      if (is_due && !delaunay_.has_edge(a, b)) missing_.push_back(part);
     }
-    return missing;
   }
 
-  /// Divides parts of edges. Which vertices see a part does not depend on those put in before it.
-  Status divide(const std::vector<VertexPair>& missing) {
+  /// Divides missing parts of edges. Which vertices see a part does not depend on those put in
+  /// before it.
+  Status divide() {
     sort_by_x();
-    for (const VertexPair& part : missing) {
+    for (const VertexPair& part : missing_) {
       if (cancellation_.is_wanted()) {
         return Error{ErrorCode::cancelled, "cancelled by the caller"};
       }
@@ -299,6 +283,8 @@ class Protection {
 
   const Solid& solid_;
   const tessellate::FacetTriangles& triangles_;
+  GrowingDelaunay delaunay_;
+  std::vector<VertexPair> missing_;  // the parts that are no edges
   std::vector<Point> points_;
   std::vector<double> place_of_steiner_;
   std::vector<bool> stays_polygon_;

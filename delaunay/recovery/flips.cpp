@@ -46,6 +46,9 @@ std::array<Index, 2> others(const geometry::Tetrahedron& t, Index p, Index q) {
   return {t[x], t[y]};
 }
 
+/// So many tests of triangles in a ring count as one visit of a tetrahedron.
+constexpr std::size_t kTestsPerVisit = 8;
+
 Index other_apex(const geometry::Tetrahedron& t, const Triangle& face) {
   return *std::find_if(t.begin(), t.end(), [&](Index vertex) { return !has_vertex(face, vertex); });
 }
@@ -305,6 +308,7 @@ class Flips::RingTriangulation {
 
   bool exists() const { return whole().exists; }
   int obstacles() const { return whole().obstacles; }
+  std::size_t tests() const { return tests_; }
 
   /// Calls `add` with each tetrahedron.
   template <class Add>
@@ -360,6 +364,7 @@ class Flips::RingTriangulation {
       const auto is_worse = [&] {
         return sum.obstacles >= limit_ || (best.exists && sum.obstacles > best.obstacles);
       };
+      ++tests_;
       if (is_worse() || side_of(i, k, j, q) <= 0 || side_of(i, k, j, p) >= 0) continue;
       add_face(sum, sorted({v[i], v[k], v[j]}));
       if (is_worse()) continue;
@@ -377,30 +382,41 @@ class Flips::RingTriangulation {
   const Ring& ring_;
   const Obstacles& obstacles_;
   int limit_;
+  std::size_t tests_ = 0;
   // [i][j] is set for i < j only: most rings are short.
   std::array<std::array<Best, kLargestRing>, kLargestRing> best_;
 };
 
-std::array<double, 2> Flips::middle_of_crossings(Index a, Index b) {
+std::array<double, 2> Flips::middle_of_crossings(Index a, Index b, std::optional<double> share) {
+  struct Crossing {
+    double place = 0;
+    bool is_edge = false;
+  };
   turns_.begin(a, b);
   const Crossings& crossed = crossings(a, b);
-  std::vector<double> places;
-  const auto add = [&](double before, double after) {
+  std::vector<Crossing> places{{0, false}, {1, false}};
+  const auto add = [&](double before, double after, bool is_edge) {
     const double sum = before + after;
-    if (sum > 0 && std::isfinite(sum)) places.push_back(before / sum);
+    if (sum > 0 && std::isfinite(sum)) places.push_back({before / sum, is_edge});
   };
   for (const MeshFace& face : crossed.faces) {
     const auto [p, q, r] = face.vertices;
-    add(rounded_volume(p, q, r, a), rounded_volume(p, q, r, b));
+    add(rounded_volume(p, q, r, a), rounded_volume(p, q, r, b), false);
   }
   for (const MeshEdge& edge : crossed.edges) {
     const auto [p, q] = edge.vertices;
-    add(rounded_area(p, q, a), rounded_area(p, q, b));
+    add(rounded_area(p, q, a), rounded_area(p, q, b), true);
   }
-  std::sort(places.begin(), places.end());
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Crossing& p, const Crossing& q) { return p.place < q.place; });
   const std::size_t middle = places.size() / 2;
-  return {middle == 0 ? 0 : places[middle - 1],
-          middle + 1 < places.size() ? places[middle + 1] : 1};
+  const Crossing& before = places[middle - 1];
+  const Crossing& after = places[middle];
+  if (!share) return {before.place, places[std::min(middle + 1, places.size() - 1)].place};
+  const double near = (after.place - before.place) * *share;
+  if (before.is_edge) return {before.place, before.place + near};
+  if (after.is_edge) return {after.place - near, after.place};
+  return {before.place, after.place};
 }
 
 /// Six times the volume between four points, without its sign.
@@ -455,6 +471,7 @@ bool Flips::remove_edge(const MeshEdge& edge, const Obstacles& obstacles) {
       !ring->is_open() || side(p, q, ring->vertices.front(), ring->vertices.back()) == 0;
   if (!is_flat_outside) return false;
   const RingTriangulation triangulation(*this, *ring, obstacles, before);
+  visits_left_ -= std::min(visits_left_, triangulation.tests() / kTestsPerVisit);
   if (!triangulation.exists() || triangulation.obstacles() >= before) return false;
   std::array<geometry::Tetrahedron, 2 * kLargestRing> new_ones;
   std::size_t count = 0;

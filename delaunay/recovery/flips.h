@@ -56,7 +56,7 @@ class KeptParts {
 inline constexpr std::size_t kShrinks = 4;
 
 /// The most vertices around an edge that is removed.
-inline constexpr std::size_t kLargestRing = 12;
+inline constexpr std::size_t kLargestRing = 64;
 
 /// A short list that holds its elements itself.
 class RingList {
@@ -110,10 +110,12 @@ class Flips {
   /// Makes a triangle, all edges of which are there, a face. False if the flips end before, or the
   /// caller cancels.
   bool recover_face(const Triangle& triangle);
-  /// The part of a missing edge, as parameters from `a` (0) to `b` (1), that holds the middle one
-  /// of the places where it crosses faces and edges, up to the places before and after that one.
-  /// Rounded.
-  std::array<double, 2> middle_of_crossings(Index a, Index b);
+  /// The part of a missing edge, as parameters from `a` (0) to `b` (1), in which it is best divided
+  /// at the middle of the places where it crosses faces and edges. Rounded. Without `share`: from
+  /// the place before the middle one to the place after it. Else from the middle place to the place
+  /// beside it, and where one of the two is of an edge, that share of the way from it on: a point
+  /// near the edge sees its whole ring, so that the edge can be removed.
+  std::array<double, 2> middle_of_crossings(Index a, Index b, std::optional<double> share);
   /// A tetrahedron that has both vertices, or kNone.
   Index tetrahedron_at(Index a, Index b);
   bool is_face(const Triangle& triangle);

@@ -5,16 +5,29 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "geometry/point.h"
 
 namespace watertight::delaunay {
 
-/// A point on the segment from p to q whose place (0 at p, 1 at q) is the fraction of a power of
-/// two with the fewest bits that is well within two places and that doubles hold. If there is none,
-/// the middle of the segment; none if doubles do not hold this one either.
-std::optional<Point> point_between(const Point& p, const Point& q,
-                                   const std::array<double, 2>& places);
+/// A point of a segment at a place: 0 at its first end, 1 at its second.
+struct PlacedPoint {
+  Point point;
+  double place = 0;
+  friend bool operator==(const PlacedPoint&, const PlacedPoint&) = default;
+};
+
+/// The point of the segment from p to q at a place; none if doubles do not hold it.
+std::optional<PlacedPoint> point_at(const Point& p, const Point& q, double place);
+
+/// The point at the place that is the fraction of a power of two with the fewest bits, at most 40,
+/// that is well within two places and at which doubles hold the point; none if there is none.
+std::optional<PlacedPoint> point_between(const Point& p, const Point& q,
+                                         const std::array<double, 2>& places);
+
+/// The centre of a tetrahedron, rounded: by additions and divisions by 4 only.
+Point centre_of(const std::vector<Point>& points, const geometry::Tetrahedron& tetrahedron);
 
 /// Rounded.
 double squared_distance(const Point& p, const Point& q);

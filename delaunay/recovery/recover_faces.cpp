@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Missing edges, then missing triangles are made by flips. Where flips end, an edge of the triangle
-// is divided in the middle of the faces and edges that it crosses, and flips go on with the parts.
+// is divided at the middle of the faces and edges that it crosses, and flips go on with the parts.
 // What is left is searched for: the tetrahedra that hold a point of the inside of a missing
 // triangle, or of the inside of an edge that is missing too, are taken away, and the cavity is
 // filled anew with the triangle in it. Triangles that are faces already stay faces. All decisions
@@ -18,6 +18,7 @@
 
 #include "delaunay/cancellation.h"
 #include "delaunay/recovery/coordinate_order.h"
+#include "delaunay/recovery/divided_edges.h"
 #include "delaunay/recovery/fill_cavity.h"
 #include "delaunay/recovery/flips.h"
 #include "delaunay/recovery/point_between.h"
@@ -39,7 +40,7 @@ constexpr std::size_t kFewVisits = 65'536;
 /// The most times that a cavity grows.
 constexpr int kGrowths = 8;
 /// The most rounds, each of which divides an edge of each missing triangle.
-constexpr std::size_t kRounds = 16;
+constexpr std::size_t kRounds = 32;
 /// The most rounds in a row after which no fewer triangles are missing than before.
 constexpr std::size_t kIdleRounds = 8;
 /// The same for a boundary of so many triangles or more, whose rounds take long.
@@ -59,8 +60,9 @@ class Recovery {
  public:
   Recovery(std::span<const Point> points, std::vector<geometry::Tetrahedron> tetrahedra,
            std::span<const Triangle> triangles, std::vector<Index> missing,
-           const CancelPoll& is_cancelled)
-      : points_(points.begin(), points.end()),
+           const DivisionRule& rule, const CancelPoll& is_cancelled)
+      : rule_(rule),
+        points_(points.begin(), points.end()),
         apex_(static_cast<Index>(points.size())),
         mesh_(std::move(tetrahedra), points.size()),
         missing_(std::move(missing)),
@@ -94,6 +96,7 @@ class Recovery {
           triangles_.size() > most_parts || flips_.is_exhausted()) {
         break;
       }
+      share_ = round < rule_.first_rounds ? std::nullopt : std::optional(rule_.share);
       divide_missing();
       is_cancelled = !flip();
     }
@@ -126,12 +129,15 @@ class Recovery {
     return result;
   }
 
+  bool has_edges(const Triangle& triangle) {
+    return std::ranges::all_of(edges_of(triangle),
+                               [this](const VertexPair& e) { return is_edge(e[0], e[1]); });
+  }
+
   /// True if no edge of a missing triangle is missing.
   bool are_edges_there() {
-    return std::ranges::all_of(missing_, [this](Index i) {
-      return std::ranges::all_of(edges_of(triangles_[i].vertices),
-                                 [this](const VertexPair& e) { return is_edge(e[0], e[1]); });
-    });
+    return std::ranges::all_of(missing_,
+                               [this](Index i) { return has_edges(triangles_[i].vertices); });
   }
 
   /// Searches once for each missing triangle. False if the caller cancels.
@@ -173,8 +179,7 @@ class Recovery {
     for (const Index i : missing_) {
       if (cancellation_.is_wanted()) return false;
       const Triangle& triangle = triangles_[i].vertices;
-      const auto is_there = [&](const VertexPair& edge) { return is_edge(edge[0], edge[1]); };
-      if (std::ranges::all_of(edges_of(triangle), is_there)) flips_.recover_face(triangle);
+      if (has_edges(triangle)) flips_.recover_face(triangle);
     }
     forget_found();
     return true;
@@ -215,6 +220,8 @@ class Recovery {
     for (auto& [edge, division] : divisions) {
       const std::optional<Index> vertex = put_on_edge(edge, division.missing);
       if (!vertex) continue;
+      // At once, before flips for other edges change what is beside the vertex.
+      for (const Index end : edge) flips_.recover_edge(end, *vertex);
       for (const Index i : std::exchange(division.triangles, {})) {
         divide_triangle(i, edge, *vertex, divisions);
       }
@@ -255,16 +262,17 @@ class Recovery {
     const auto [a, b] = edge;
     const bool is_missing = !is_edge(a, b);
     const std::array<double, 2> places =
-        is_missing ? flips_.middle_of_crossings(a, b) : std::array<double, 2>{0, 1};
-    const std::optional<Point> point = point_between(points_[a], points_[b], places);
-    if (!point) return std::nullopt;
+        is_missing ? flips_.middle_of_crossings(a, b, share_) : std::array<double, 2>{0, 1};
+    const std::optional<PlacedPoint> placed = divided_.place_on(points_, edge, places);
+    if (!placed) return std::nullopt;
+    const Point& point = placed->point;
     std::vector<Index> around = star(a);
     std::erase_if(around, [&, end = b](Index t) { return !has_vertex(mesh_.tetrahedron(t), end); });
     if (around.empty()) {
       around = cavity(triangles_[missing].vertices);
-      std::erase_if(around, [&](Index t) { return !holds(t, *point); });
+      std::erase_if(around, [&](Index t) { return !holds(t, point); });
       // Edges of two shells may cross in a point that is no vertex.
-      const auto is_taken = [&](Index t) { return has_wanted_part_at(t, *point); };
+      const auto is_taken = [&](Index t) { return has_wanted_part_at(t, point); };
       if (std::ranges::any_of(around, is_taken)) return std::nullopt;
     }
     const auto vertex = static_cast<Index>(points_.size());
@@ -272,14 +280,15 @@ class Recovery {
     for (const Index t : around) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
         const auto [p, q, r] = inward_face(mesh_.tetrahedron(t), corner);
-        if (geometry::orient3d(points_[p], points_[q], points_[r], *point) > 0) {
+        if (geometry::orient3d(points_[p], points_[q], points_[r], point) > 0) {
           parts.push_back({p, q, r, vertex});
         }
       }
     }
     // Where the visits have ended, tetrahedra that hold the point may not be known.
     if (parts.empty() || visits_left_ == 0 || flips_.is_exhausted()) return std::nullopt;
-    points_.push_back(*point);
+    points_.push_back(point);
+    divided_.divide(edge, vertex, placed->place);
     wanted_.remove(edge);
     mesh_.replace(around, parts);
     return vertex;
@@ -431,15 +440,6 @@ class Recovery {
     }
   }
 
-  std::vector<Index> vertices_of(const std::vector<Index>& tetrahedra) const {
-    std::vector<Index> vertices;
-    for (const Index t : tetrahedra) {
-      const geometry::Tetrahedron& tetrahedron = mesh_.tetrahedron(t);
-      vertices.insert(vertices.end(), tetrahedron.begin(), tetrahedron.end());
-    }
-    return vertices;
-  }
-
   /// Adds the tetrahedra beyond the blocked faces of a cavity, or if there are none, beyond all of
   /// its faces. False if the cavity cannot grow.
   bool grow(std::vector<Index>& tetrahedra, const std::vector<Triangle>& blocked) const {
@@ -475,7 +475,7 @@ class Recovery {
     };
     std::array<std::vector<Candidate>, 2> sides;
     for (const Index t : tetrahedra) {
-      const Point centre = centre_of(mesh_.tetrahedron(t));
+      const Point centre = centre_of(points_, mesh_.tetrahedron(t));
       const auto sees = [&](const Triangle& f) {
         return geometry::orient3d(points_[f[0]], points_[f[1]], points_[f[2]], centre) > 0;
       };
@@ -490,15 +490,6 @@ class Recovery {
       cavity.inner_vertices.push_back(static_cast<Index>(points_.size()));
       points_.push_back(side[choice].point);
     }
-  }
-
-  Point centre_of(const geometry::Tetrahedron& tetrahedron) const {
-    Point centre{0, 0, 0};
-    for (const Index vertex : tetrahedron) {
-      const Point& p = points_[vertex];
-      centre = {centre.x + p.x / 4, centre.y + p.y / 4, centre.z + p.z / 4};
-    }
-    return centre;
   }
 
   /// Makes a triangle a face. A cavity that cannot be filled grows.
@@ -520,7 +511,7 @@ class Recovery {
   /// Replaces the tetrahedra of a cavity, if a filling is found, and returns the filling. Every
   /// second search may add points.
   Filling fill(const std::vector<Index>& old_ones, const Triangle& triangle, std::size_t& steps) {
-    Cavity cavity{front(old_ones, triangle), vertices_of(old_ones), apex_, triangle};
+    Cavity cavity{front(old_ones, triangle), corners_of(mesh_, old_ones), apex_, triangle};
     const std::size_t point_count = points_.size();
     if (searches_ % 2 == 1) add_points(old_ones, triangle, cavity);
     Filling filling = fill_cavity(points_, std::move(cavity), steps);
@@ -533,6 +524,9 @@ class Recovery {
     return filling;
   }
 
+  DivisionRule rule_;
+  std::optional<double> share_;  // of the rule, in this round
+  DividedEdges divided_;
   std::vector<Point> points_;    // the input's, the apex, and the points added
   Index apex_;                   // of cones over faces of the hull
   std::size_t searches_ = 0;     // that ended
@@ -580,11 +574,14 @@ Result<RecoveredFaces> recover_faces(std::span<const Point> points,
   }
   std::vector<Index> sorted_missing;
   for (const Index number : missing) sorted_missing.push_back(place_of[number]);
-  Result<RecoveredFaces> recovered =
-      Recovery(sorted_points, std::move(tetrahedra), sorted_triangles, std::move(sorted_missing),
-               is_cancelled)
-          .run();
-  if (!recovered) return recovered;
+  Result<RecoveredFaces> recovered = RecoveredFaces{};
+  for (const DivisionRule& rule : kDivisionRules) {
+    recovered =
+        Recovery(sorted_points, tetrahedra, sorted_triangles, sorted_missing, rule, is_cancelled)
+            .run();
+    if (!recovered) return recovered;
+    if (recovered->missing == 0) break;
+  }
   const auto renumber = [&](auto& vertices) {
     for (Index& vertex : vertices) {
       if (vertex < points.size()) vertex = order.vertex_at[vertex];

@@ -85,4 +85,13 @@ std::vector<geometry::Tetrahedron> TetrahedronMesh::take() {
   return std::move(tetrahedra_);
 }
 
+std::vector<Index> corners_of(const TetrahedronMesh& mesh, std::span<const Index> tetrahedra) {
+  std::vector<Index> corners;
+  for (const Index t : tetrahedra) {
+    const geometry::Tetrahedron& tetrahedron = mesh.tetrahedron(t);
+    corners.insert(corners.end(), tetrahedron.begin(), tetrahedron.end());
+  }
+  return corners;
+}
+
 }  // namespace watertight::delaunay

@@ -83,4 +83,7 @@ class TetrahedronMesh {
   std::vector<Half> halves_;  // of one replacement
 };
 
+/// The corners of tetrahedra of a mesh, one after the other.
+std::vector<Index> corners_of(const TetrahedronMesh& mesh, std::span<const Index> tetrahedra);
+
 }  // namespace watertight::delaunay

@@ -15,6 +15,7 @@
 #include "delaunay/canonical/follow_delaunay.h"
 #include "delaunay/canonical_delaunay.h"
 #include "delaunay/ladder.h"
+#include "delaunay/recovery/divided_edges.h"
 #include "delaunay/recovery/fill_cavity.h"
 #include "delaunay/recovery/flips.h"
 #include "delaunay/recovery/point_between.h"
@@ -356,17 +357,34 @@ TEST_CASE("an edge is divided at the place with the fewest bits that is exact") 
   const auto at = [](const Point& q, double least, double most) {
     return delaunay::point_between({0, 0, 0}, q, {least, most});
   };
-  CHECK(at({8, 16, 24}, 0, 1) == Point{4, 8, 12});
-  CHECK(at({8, 16, 24}, 0, 0.4) == Point{2, 4, 6});
-  CHECK(at({8, 16, 24}, 0.5, 1) == Point{6, 12, 18});
-  CHECK(at({8, 16, 24}, 0.55, 0.72) == Point{5, 10, 15});
-  // Places of up to 16 bits do not part these two.
-  CHECK(at({8, 16, 24}, 0.1, 0.100001) == Point{4, 8, 12});
-  // Doubles hold the middle, but no quarter.
-  CHECK(delaunay::point_between({0x1p52, 0, 0}, {0x1p52 + 2, 2, 6}, {0, 0.3}) ==
-        Point{0x1p52 + 1, 1, 3});
-  // They do not hold this middle.
-  CHECK_FALSE(delaunay::point_between({0x1p52, 0, 1}, {0x1p52 + 1, 2, 2}, {0, 1}).has_value());
+  CHECK(at({8, 16, 24}, 0, 1) == delaunay::PlacedPoint{{4, 8, 12}, 0.5});
+  CHECK(at({8, 16, 24}, 0, 0.4) == delaunay::PlacedPoint{{2, 4, 6}, 0.25});
+  CHECK(at({8, 16, 24}, 0.5, 1) == delaunay::PlacedPoint{{6, 12, 18}, 0.75});
+  CHECK(at({8, 16, 24}, 0.55, 0.72) == delaunay::PlacedPoint{{5, 10, 15}, 0.625});
+  // Places of up to 40 bits do not part these two.
+  CHECK_FALSE(at({8, 16, 24}, 0.1, 0.1 + 0x1p-50).has_value());
+  // Doubles hold the middle, but no quarter and no other middle.
+  const Point p{0x1p52, 0, 0};
+  CHECK_FALSE(delaunay::point_between(p, {0x1p52 + 2, 2, 6}, {0, 0.3}).has_value());
+  CHECK(delaunay::point_at(p, {0x1p52 + 2, 2, 6}, 0.5) ==
+        delaunay::PlacedPoint{{0x1p52 + 1, 1, 3}, 0.5});
+  CHECK_FALSE(delaunay::point_at({0x1p52, 0, 1}, {0x1p52 + 1, 2, 2}, 0.5).has_value());
+}
+
+TEST_CASE("the parts of an edge are divided at places on the whole edge") {
+  delaunay::DividedEdges edges;
+  std::vector<Point> points{{0, 0, 0}, {0x1p52, 3 * 0x1p52, 0}};
+  const auto divide = [&](const delaunay::VertexPair& edge, double least, double most) {
+    const auto placed = edges.place_on(points, edge, {least, most});
+    REQUIRE(placed.has_value());
+    edges.divide(edge, static_cast<Index>(points.size()), placed->place);
+    points.push_back(placed->point);
+    return placed->place;
+  };
+  CHECK(divide({0, 1}, 0.3, 0.4) == 0.375);
+  CHECK(divide({1, 2}, 0, 1) == 0.5);        // the whole edge's middle, not the part's
+  CHECK(divide({1, 3}, 0.9, 1) == 0.53125);  // from vertex 1 towards vertex 3
+  CHECK(points[4] == Point{0.53125 * 0x1p52, 3 * 0.53125 * 0x1p52, 0});
 }
 
 /// Six times the volume of tetrahedra on integers, all of which are positive.

@@ -26,7 +26,7 @@ using Edge = std::pair<Index, Index>;
 
 constexpr std::uint64_t kMostPairs = 20'000'000;
 
-Edge sorted(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+Edge edge_between(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// For each edge of a triangle in projection: +1 if the point is on the inner side, 0 on the line
 /// of the edge, -1 on the outer side.
@@ -233,7 +233,7 @@ class ContactDivision {
       for (Index r = rings.begin; r < rings.end; ++r) {
         const std::span<const Index> ring = solid_.ring(r);
         for (std::size_t i = 0; i < ring.size(); ++i) {
-          ring_edges_.push_back(sorted(ring[i], ring[(i + 1) % ring.size()]));
+          ring_edges_.push_back(edge_between(ring[i], ring[(i + 1) % ring.size()]));
         }
       }
     }
@@ -272,9 +272,9 @@ class ContactDivision {
     const Triangle& first = canonical_.triangles[pair.first];
     const Triangle& second = canonical_.triangles[pair.second];
     for (std::size_t i = 0; i < 3; ++i) {
-      const Edge a = sorted(first[i], first[(i + 1) % 3]);
+      const Edge a = edge_between(first[i], first[(i + 1) % 3]);
       for (std::size_t k = 0; k < 3; ++k) {
-        const Edge b = sorted(second[k], second[(k + 1) % 3]);
+        const Edge b = edge_between(second[k], second[(k + 1) % 3]);
         if (!do_cross(points_, a, b)) continue;
         const Index facet_of_a = canonical_.facet_of[pair.first];
         const Index facet_of_b = canonical_.facet_of[pair.second];
@@ -292,7 +292,7 @@ class ContactDivision {
     for (Index i = canonical_.first[facet]; i < canonical_.first[facet + 1]; ++i) {
       const Triangle& t = canonical_.triangles[i];
       for (std::size_t k = 0; k < 3; ++k) {
-        if (sorted(t[k], t[(k + 1) % 3]) == edge) apexes.push_back(t[(k + 2) % 3]);
+        if (edge_between(t[k], t[(k + 1) % 3]) == edge) apexes.push_back(t[(k + 2) % 3]);
       }
     }
     return apexes.size() == 2 && geometry::orient3d(points_[edge.first], points_[edge.second],
@@ -315,7 +315,7 @@ class ContactDivision {
       for (std::size_t k = 0; k < 3; ++k) {
         const Index a = canonical_.triangles[t][k];
         const Index b = canonical_.triangles[t][(k + 1) % 3];
-        if (is_ring_edge(sorted(a, b)) && !is_own_edge(facet, a, b)) touched_.insert(facet);
+        if (is_ring_edge(edge_between(a, b)) && !is_own_edge(facet, a, b)) touched_.insert(facet);
       }
     }
   }

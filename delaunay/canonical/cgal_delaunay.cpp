@@ -24,6 +24,7 @@
 
 #include "delaunay/cancellation.h"
 #include "delaunay/canonical/canonical_order.h"
+#include "delaunay/canonical/growing_delaunay.h"
 
 namespace watertight::delaunay {
 namespace {

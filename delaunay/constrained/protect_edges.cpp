@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "delaunay/cancellation.h"
-#include "delaunay/canonical/cgal_delaunay.h"
+#include "delaunay/canonical/growing_delaunay.h"
 #include "delaunay/recovery/point_between.h"
 #include "delaunay/recovery/tetrahedron_mesh.h"
 #include "geometry/predicates/predicates.h"

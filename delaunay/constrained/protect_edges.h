@@ -27,13 +27,13 @@ struct ProtectedSolid {
 /// Steiner vertex lies exactly on its edge, at a fraction of a power of two; the set of Steiner
 /// vertices depends on the coordinates alone.
 /// Errors: limit_exceeded where there would be more Steiner vertices than 24 for each vertex and
-/// 1,024, or than 16,384, for more than 65,536 vertices, after 64
-/// rounds, or where doubles have no point on an edge;
-/// cancelled. Cost: at most some tens of Delaunay tetrahedralizations. Source: H. Si, K. Gärtner,
+/// 1,024, or than 16,384, for more than 65,536 vertices, after 64 rounds, or where doubles have no
+/// point on an edge; cancelled. Cost: one Delaunay tetrahedralization of all points, and for each
+/// Steiner vertex a look at the points of its part's extent along x. Source: H. Si, K. Gärtner,
 /// "Meshing piecewise linear complexes by constrained Delaunay tetrahedralizations" (2005), section
 /// 3: the vertex that sees an edge under the largest angle tells how far from an end the edge is
 /// divided. Departures: such a place is exact within 3 % of the distance, so that few bits hold it;
-/// all missing edges are divided before the next tetrahedralization.
+/// all missing edges are divided before their points are inserted.
 Result<ProtectedSolid> protect_edges(const Solid& solid,
                                      const tessellate::FacetTriangles& triangles,
                                      const std::vector<bool>& is_taken_apart,

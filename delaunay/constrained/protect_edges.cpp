@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kFewSteiner = 1024;
 constexpr std::size_t kSteinerPerVertex = 24;
 constexpr std::size_t kMostSteiner = 16'384;
-/// A larger solid is not divided: each round makes its Delaunay tetrahedralization anew.
+/// A larger solid is not divided: that would take too long.
 constexpr std::size_t kMostGiven = 65'536;
 /// The most rounds, each of which divides all edges that are missing; those of hard solids take 40.
 constexpr std::size_t kMostRounds = 64;

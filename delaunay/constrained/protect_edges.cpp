@@ -39,6 +39,7 @@ constexpr double kMostPlace = 0.8;
 constexpr double kLeastPlaceOfEqualEnds = 1.0 / 8;
 /// A Delaunay tetrahedralization of a boundary has about 7 tetrahedra for each vertex.
 constexpr std::uint64_t kTetrahedraPerVertex = 256;
+
 class Protection {
  public:
   Protection(const Solid& solid, const tessellate::FacetTriangles& triangles,

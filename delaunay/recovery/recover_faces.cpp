@@ -580,7 +580,7 @@ Result<RecoveredFaces> recover_faces(std::span<const Point> points,
         Recovery(sorted_points, tetrahedra, sorted_triangles, sorted_missing, rule, is_cancelled)
             .run();
     if (!recovered) return recovered;
-    if (recovered->missing == 0) break;
+    if (recovered->missing == 0 || sorted_triangles.size() >= kManyTriangles) break;
   }
   const auto renumber = [&](auto& vertices) {
     for (Index& vertex : vertices) {
